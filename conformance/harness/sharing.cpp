@@ -37,15 +37,14 @@ rr::MessageTree message_of(rr::EntryType type, std::string_view member) {
   return message;
 }
 
-// Sends a request, and waits for its answer.
-rr::MessageTree asked(Stream& stream, const rr::MessageTree& request) {
+// Sends a request, and waits for its answer, in which names may be codes.
+rr::MessageTree asked(Stream& stream, const rr::MessageTree& request, rr::EntryType answer_type) {
   stream.send(rr::write_tree(request));
   Bytes bytes;
   rr::MessageTree answer;
-  const rr::EntryTree& entry = request.entries[0];
-  const auto type = static_cast<rr::EntryType>(static_cast<std::uint16_t>(entry.type) + 1);
-  if (stream.receive(bytes, limit) != Arrival::message ||
-      !has_entry(bytes, type, entry.member, answer) || answer.entries[0].error != 0) {
+  if (stream.receive(bytes, limit) != Arrival::message || !rr::read_tree(bytes, answer) ||
+      answer.entries.size() != 1 || answer.entries[0].type != answer_type ||
+      answer.entries[0].error != 0) {
     throw std::runtime_error("there is no shared memory");
   }
   return answer;
@@ -53,20 +52,21 @@ rr::MessageTree asked(Stream& stream, const rr::MessageTree& request) {
 
 std::unique_ptr<channel::SharedCarrier> carrier_of(channel::SharedRings rings, bool is_service,
                                                    const Stream& stream) {
-  return std::make_unique<channel::SharedCarrier>(std::move(rings), is_service,
-                                                  stream.descriptor(), no_spin);
+  return std::make_unique<channel::SharedCarrier>(std::move(rings), is_service, stream.descriptor(),
+                                                  no_spin);
 }
 
 void ask_for_memory(Stream& stream) {
+  using enum rr::EntryType;
   const rr::MessageTree answer =
-      asked(stream, message_of(rr::EntryType::stream_check_capability,
-                               channel::shared_memory_capability));
+      asked(stream, message_of(stream_check_capability, channel::shared_memory_capability),
+            stream_check_capability_ret);
   const auto& elements = answer.entries[0].elements;
   if (elements.size() != 1 || elements[0].payload.size() != sizeof(std::uint32_t) ||
       elements[0].payload[0] != std::byte{channel::shared_memory_level}) {
     throw std::runtime_error("shared memory is not offered");
   }
-  asked(stream, message_of(rr::EntryType::stream_op, channel::share_memory));
+  asked(stream, message_of(stream_op, channel::share_memory), stream_op_ret);
   std::error_code error;
   channel::SharedRings rings = channel::SharedRings::open(stream.take_handle(), error);
   if (!rings) throw std::runtime_error("the shared memory is wrong: " + error.message());
@@ -74,8 +74,8 @@ void ask_for_memory(Stream& stream) {
 }
 
 void answer_level(Stream& stream) {
-  rr::MessageTree answer = message_of(rr::EntryType::stream_check_capability_ret,
-                                      channel::shared_memory_capability);
+  rr::MessageTree answer =
+      message_of(rr::EntryType::stream_check_capability_ret, channel::shared_memory_capability);
   rr::ElementTree& element = answer.entries[0].elements.emplace_back();
   element.name = "return";
   element.type = rr::ElementType::uint32;
@@ -104,8 +104,8 @@ void give_memory(Stream& stream) {
 void share_as_client(Stream& stream) {
   stream.set_filter([is_asked = false](Stream& line, const Bytes& bytes) mutable {
     rr::MessageTree message;
-    if (is_asked || !has_entry(bytes, rr::EntryType::stream_op_ret, channel::create_connection,
-                               message) ||
+    if (is_asked ||
+        !has_entry(bytes, rr::EntryType::stream_op_ret, channel::create_connection, message) ||
         message.entries[0].error != 0) {
       return false;
     }
@@ -118,8 +118,8 @@ void share_as_client(Stream& stream) {
 void share_as_service(Stream& stream) {
   stream.set_filter([](Stream& line, const Bytes& bytes) {
     rr::MessageTree message;
-    if (has_entry(bytes, rr::EntryType::stream_check_capability,
-                  channel::shared_memory_capability, message)) {
+    if (has_entry(bytes, rr::EntryType::stream_check_capability, channel::shared_memory_capability,
+                  message)) {
       answer_level(line);
       return true;
     }

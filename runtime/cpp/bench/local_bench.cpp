@@ -33,9 +33,8 @@ extern const rr::ObjectType value_type;
 
 constexpr rr::Parameter blob_parameters[] = {rr::parameter<std::uint32_t>("size")};
 enum Place : std::size_t { value_place, blob_place };
-constexpr rr::Member members[] = {
-    rr::property<double>("value", rr::readonly),
-    rr::function<rr::Array<std::uint8_t>>("blob", blob_parameters)};
+constexpr rr::Member members[] = {rr::property<double>("value", rr::readonly),
+                                  rr::function<rr::Array<std::uint8_t>>("blob", blob_parameters)};
 
 class ValueStub : public virtual rr::Stub {
  public:
@@ -136,8 +135,8 @@ struct Way {
     }
   }
   [[nodiscard]] double at(double share) {
-    const auto place = times.begin() + static_cast<std::ptrdiff_t>(
-                                           share * static_cast<double>(times.size() - 1));
+    const auto place =
+        times.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(times.size() - 1));
     std::nth_element(times.begin(), place, times.end());
     return *place;
   }
@@ -152,14 +151,14 @@ Way way_of(std::string name, const std::string& folder, const std::string& url, 
 
 void compare(const std::string& folder, bool is_split, int rounds, int calls, int spin) {
   Child server({"serve", folder, is_split ? "1" : "0", std::to_string(spin)});
-  const std::string ready = server.wait_for("ready ");
+  const std::string ready = server.wait_for("ready");
   const std::string port = ready.substr(0, ready.find(' '));
   const std::string local =
       "rr+local:///?nodeid=" + ready.substr(ready.find(' ') + 1) + "&service=value";
   pin_to(0);
   std::vector<Way> ways;
-  ways.push_back(way_of("tcp", folder, "rr+tcp://127.0.0.1:" + port + "/?service=value", false,
-                        spin));
+  ways.push_back(
+      way_of("tcp", folder, "rr+tcp://127.0.0.1:" + port + "/?service=value", false, spin));
   ways.push_back(way_of("local", folder, local, false, spin));
   ways.push_back(way_of("shm", folder, local, true, spin));
   for (const std::uint32_t size : {0U, 10'000U, 1'000'000U}) {

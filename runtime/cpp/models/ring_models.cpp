@@ -115,8 +115,8 @@ struct RingModel : rl::test_suite<RingModel<Sync, is_pinned>, 2> {
   }
 };
 
-/// A reader that sleeps on the word, and another thread of its process that has it look at something
-/// else: the end of the socket.
+/// A reader that sleeps on the word, and another thread of its process that has it look at
+/// something else: the end of the socket.
 template <class Sync>
 struct InterruptModel : rl::test_suite<InterruptModel<Sync>, 2> {
   using Ring = channel::RingSteps<Sync>;

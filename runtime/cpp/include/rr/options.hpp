@@ -252,7 +252,7 @@ struct NodeOptions {
   LocalOptions local{};
   /// How long whoever waits for a message keeps looking for it before it sleeps; with shared memory
   /// only, and only while the other side runs on another processor. Answers come sooner by the time
-  /// that a wake-up takes, and the processor is busy meanwhile. 0: it sleeps at once.
+  /// that a wake-up takes, and the processor is busy meanwhile. 1 ms at most. 0: it sleeps at once.
   std::chrono::microseconds spin{0};
   /// Where nodes find each other by `rr+intra`; null: all of the process do.
   std::shared_ptr<IntraSpace> intra{};

@@ -56,7 +56,7 @@ class Opening {
   const std::vector<platform::UserId> servers_;
   bool is_connected_ = false;
   NodeId said_node_;  // what the other side claimed before TLS
-  Agreed agreed_;  // from agree() on
+  Agreed agreed_;     // from agree() on
   Descriptor memory_;
   std::vector<std::byte> request_;
   std::vector<std::byte> answer_;

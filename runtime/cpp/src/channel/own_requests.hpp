@@ -35,7 +35,7 @@ struct OwnAnswer {
   /// The other side has said who it is, and what is agreed with it; before the answer is sent.
   std::optional<Agreement> agreement{};
   bool begins_tls = false;
-  bool is_mutual = false;  ///< the client wants its certificate to be asked for
+  bool is_mutual = false;      ///< the client wants its certificate to be asked for
   bool shares_memory = false;  ///< with a memory; where there is none refuse() has another answer
 };
 

@@ -27,9 +27,9 @@ struct RingWords {
   alignas(line) SleepWord room{0};                 ///< RingSteps::Room
 };
 
-/// How a reader of a ring sleeps until there are bytes, and a writer until there is room. No wake-up
-/// is lost: who goes to sleep leaves word of it and looks once more; who brings something looks
-/// for such word afterwards. All four operations are in one order.
+/// How a reader of a ring sleeps until there are bytes, and a writer until there is room. No
+/// wake-up is lost: who goes to sleep leaves word of it and looks once more; who brings something
+/// looks for such word afterwards. All four operations are in one order.
 template <class Sync>
 struct RingSteps {
   using Words = RingWords<Sync>;
@@ -46,11 +46,11 @@ struct RingSteps {
     by_word = 2,
   };
 
-  /// The writer has put bytes into the ring, up to `written`. Returns how the reader is to be woken,
-  /// which the caller has to do.
+  /// The writer has put bytes into the ring, up to `written`. Returns how the reader is to be
+  /// woken, which the caller has to do.
   static std::uint32_t publish(Words& words, std::uint64_t written);
-  /// The reader will do something else, and is to be woken by the bell. True when there is something
-  /// to read already: then it is not.
+  /// The reader will do something else, and is to be woken by the bell. True when there is
+  /// something to read already: then it is not.
   static bool watch(Words& words, std::uint64_t taken);
   /// The reader sleeps until there is something, or somebody interrupts it, or for no reason, and
   /// for `time` at most.
@@ -108,8 +108,7 @@ template <class Sync>
 }
 
 template <class Sync>
-bool RingSteps<Sync>::want_room(Words& words, Room how, std::uint64_t written,
-                                std::uint64_t size) {
+bool RingSteps<Sync>::want_room(Words& words, Room how, std::uint64_t written, std::uint64_t size) {
   words.room.fetch_or(how);
   return written - words.taken.load() < size;
 }

@@ -19,9 +19,13 @@ constexpr int looks_without_clock = 32;
 // After spinning in vain, that is left out for twice as many receives each time, up to 2 to this.
 constexpr unsigned most_vain_spins = 8;
 
-bool has_several_processors() {
-  static const bool has_several = std::thread::hardware_concurrency() > 1;
-  return has_several;
+// A program may ask for more: whoever wants the thread back would wait for as long.
+constexpr std::chrono::microseconds longest_spin{1000};
+
+std::chrono::microseconds allowed_spin(std::chrono::microseconds spin) {
+  static const bool has_several_processors = std::thread::hardware_concurrency() > 1;
+  constexpr std::chrono::microseconds none{0};
+  return has_several_processors ? std::clamp(spin, none, longest_spin) : none;
 }
 
 }  // namespace
@@ -32,7 +36,7 @@ SharedCarrier::SharedCarrier(SharedRings rings, bool is_server, int socket,
       reader_(is_server ? rings_.to_server() : rings_.to_client()),
       writer_(is_server ? rings_.to_client() : rings_.to_server()),
       socket_(socket),
-      spin_(has_several_processors() ? spin : std::chrono::microseconds(0)),
+      spin_(allowed_spin(spin)),
       charge_(std::move(charge)),
       is_watching_(is_server) {}
 
@@ -103,8 +107,8 @@ std::ptrdiff_t SharedCarrier::receive(Frame& /*message*/, bool /*may_block*/) {
   return size;
 }
 
-// Takes the bells, and finds the end, which is behind them. Before the ring is read: what was written
-// before the end is received before it.
+// Takes the bells, and finds the end, which is behind them. Before the ring is read: what was
+// written before the end is received before it.
 void SharedCarrier::look_at_socket(Look look) {
   for (int left = most_looks; left != 0; --left) {
     std::array<std::byte, 256> bells;

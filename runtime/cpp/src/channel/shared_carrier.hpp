@@ -14,9 +14,9 @@
 
 namespace rr::channel {
 
-/// Carries the bytes of a connection through two rings in shared memory. Its local socket stays: the
-/// end of either side shows there, and its bytes are a bell for a reactor that watches it. What a
-/// bell's byte says is not looked at.
+/// Carries the bytes of a connection through two rings in shared memory. Its local socket stays:
+/// the end of either side shows there, and its bytes are a bell for a reactor that watches it. What
+/// a bell's byte says is not looked at.
 class SharedCarrier final : public Carrier {
  public:
   /// `spin`: how long a receive that blocks looks again and again before it sleeps, where the other
@@ -43,11 +43,11 @@ class SharedCarrier final : public Carrier {
     Look expected = Look::none;
     if (!must_look_.compare_exchange_strong(expected, look) && is_end) must_look_ = look;
   }
-  /// With the read lease: whether receive() has taken bells since this was asked last, which may have
-  /// rung for room.
+  /// With the read lease: whether receive() has taken bells since this was asked last, which may
+  /// have rung for room.
   bool has_taken_bells() { return std::exchange(has_taken_bells_, false); }
-  /// With the read lease, which is about to be free: the bell rings from now on for what comes. True
-  /// when something has come already; then it does not.
+  /// With the read lease, which is about to be free: the bell rings from now on for what comes.
+  /// True when something has come already; then it does not.
   bool rest();
   /// With the read lease: sleeps until there may be something to receive.
   void wait(Time deadline);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two sides of one memory in one process, with their sockets.
-#include "runtime/cpp/src/channel/shared_carrier.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,6 +9,8 @@
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include "runtime/cpp/src/channel/shared_carrier.hpp"
 
 namespace rr::channel {
 namespace {
@@ -32,8 +32,7 @@ class SharedCarrierTest : public ::testing::Test {
     memory_ = platform::map_shared_memory(handle, 1 << 20, error);
     client_ = std::make_unique<SharedCarrier>(SharedRings::open(handle, error), false,
                                               client_socket_.get(), 0us);
-    server_ =
-        std::make_unique<SharedCarrier>(std::move(rings), true, server_socket_.get(), 0us);
+    server_ = std::make_unique<SharedCarrier>(std::move(rings), true, server_socket_.get(), 0us);
   }
 
   static std::ptrdiff_t send(SharedCarrier& carrier, std::string_view text) {
@@ -143,6 +142,48 @@ TEST_F(SharedCarrierTest, WhoeverSleepsIsToldOfTheEnd) {
   client_socket_ = {};
   server_->interrupt();
   sleeping.join();
+}
+
+TEST_F(SharedCarrierTest, TheOtherSideIsToldByWhoeverCloses) {
+  std::thread sleeping([&] {
+    std::string text = "nothing";
+    while (text == "nothing") text = received(*server_, true);
+    EXPECT_EQ(text, "");
+  });
+  platform::shut_down(client_socket_.get());
+  client_->interrupt_other();
+  sleeping.join();
+}
+
+TEST_F(SharedCarrierTest, WaitsForWhatCanBeReceived) {
+  const Time begin = Clock::now();
+  server_->wait(begin);
+  send(*client_, "asked");
+  server_->wait(begin + 20s);
+  EXPECT_EQ(received(*server_), "asked");
+}
+
+TEST_F(SharedCarrierTest, HasNothingOfItsOwnToSend) {
+  EXPECT_FALSE(client_->carries_messages());
+  EXPECT_FALSE(client_->has_received());
+  EXPECT_EQ(client_->unsent(), 0U);
+  EXPECT_TRUE(client_->flush());
+  client_->set_on_room(nullptr);
+  client_->end();
+  Frame frame;
+  EXPECT_EQ(client_->receive(frame, false), platform::broken) << "it has no messages";
+  EXPECT_EQ(send(*client_, "asked"), 5);
+  EXPECT_EQ(received(*server_), "asked");
+}
+
+TEST_F(SharedCarrierTest, SaysThatBellsWereTaken) {
+  EXPECT_FALSE(server_->has_taken_bells());
+  send(*client_, "asked");
+  server_->note_event();
+  EXPECT_EQ(received(*server_), "asked");
+  EXPECT_TRUE(server_->has_taken_bells());
+  EXPECT_FALSE(server_->has_taken_bells());
+  EXPECT_EQ(server_->shared(), server_.get());
 }
 
 TEST_F(SharedCarrierTest, AWrongIndexEndsIt) {

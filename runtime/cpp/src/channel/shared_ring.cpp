@@ -10,7 +10,8 @@ namespace {
 
 using Words = SharedRing::Words;
 
-// The words are at the same places in all processes, and need nothing of the process that uses them.
+// The words are at the same places in all processes, and need nothing of the process that uses
+// them.
 static_assert(sizeof(Words) == 4 * Words::line && std::is_standard_layout_v<Words> &&
               std::atomic<std::uint64_t>::is_always_lock_free);
 

@@ -30,13 +30,13 @@ class RingWriter {
 
   explicit RingWriter(const SharedRing& ring) : ring_(ring) {}
 
-  /// Copies in what there is room for of the bytes behind the first `skipped`. `wake` is called with
-  /// a Steps::Reader where the reader is to be woken. Returns how many bytes, or platform::broken
-  /// when the other side's index is wrong.
+  /// Copies in what there is room for of the bytes behind the first `skipped`. `wake` is called
+  /// with a Steps::Reader where the reader is to be woken. Returns how many bytes, or
+  /// platform::broken when the other side's index is wrong.
   template <class Wake>
   std::ptrdiff_t write(std::span<const platform::Buffer> pieces, std::size_t skipped, Wake&& wake);
-  /// After write() has had no room for all: the other side rings when there is some. True when there
-  /// is some already.
+  /// After write() has had no room for all: the other side rings when there is some. True when
+  /// there is some already.
   [[nodiscard]] bool want_room() {
     return Steps::want_room(*ring_.words, Steps::by_bell, written_, ring_.size);
   }

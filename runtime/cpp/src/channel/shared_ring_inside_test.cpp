@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // One ring, without another process.
-#include "runtime/cpp/src/channel/shared_ring.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,6 +10,8 @@
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include "runtime/cpp/src/channel/shared_ring.hpp"
 
 namespace rr::channel {
 namespace {
@@ -92,17 +92,17 @@ TEST_F(SharedRingTest, IsAQueueForAllSizes) {
     std::string text(random() % (random() % 8 == 0 ? 2 * ring_size : 100), ' ');
     for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>(next + i);
     const std::ptrdiff_t written = write(text);
-    ASSERT_EQ(written, static_cast<std::ptrdiff_t>(
-                           std::min(text.size(), ring_size - model.size())));
+    ASSERT_EQ(written,
+              static_cast<std::ptrdiff_t>(std::min(text.size(), ring_size - model.size())));
     model.insert(model.end(), text.begin(), text.begin() + written);
     next = static_cast<char>(next + written);
     turns += static_cast<std::size_t>(written);
     const std::size_t most = random() % (random() % 8 == 0 ? 2 * ring_size : 100);
     const std::size_t size = std::min(most, model.size());
     ASSERT_EQ(read(most),
-              size == 0 ? "nothing"
-                        : std::string(model.begin(),
-                                      model.begin() + static_cast<std::ptrdiff_t>(size)));
+              size == 0
+                  ? "nothing"
+                  : std::string(model.begin(), model.begin() + static_cast<std::ptrdiff_t>(size)));
     model.erase(model.begin(), model.begin() + static_cast<std::ptrdiff_t>(size));
   }
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The memory of a connection, as another process may have made it.
-#include "runtime/cpp/src/channel/shared_rings.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstring>
 #include <vector>
+
+#include "runtime/cpp/src/channel/shared_rings.hpp"
 
 namespace rr::channel {
 namespace {
@@ -104,8 +104,8 @@ TEST_F(SharedRingsTest, AreRefusedWhenTheyAreNotAsThePageSays) {
 
 TEST_F(SharedRingsTest, AreMadeOfPowersOfTwo) {
   platform::Descriptor handle;
-  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, std::size_t{5000},
-                                 2 * SharedRings::largest_ring}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{100}, std::size_t{5000}, 2 * SharedRings::largest_ring}) {
     std::error_code error;
     EXPECT_FALSE(SharedRings::make(size, handle, error));
     EXPECT_EQ(error, std::errc::invalid_argument);

@@ -234,7 +234,7 @@ StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
 // What a message for the connection itself asks for.
 void StreamConnection::answer_own(const Message& message, const Entry& entry,
                                   std::span<const std::byte> bytes) {
-  const OwnSide side{*options_, terms_, layers_, remote_node_, version(), role_ == Role::server,
+  const OwnSide side{*options_,  terms_, layers_, remote_node_, version(), role_ == Role::server,
                      may_share()};
   Writer& writer = thread_writer();
   OwnRequests own(side, writer);

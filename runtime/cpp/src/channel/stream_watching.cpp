@@ -17,15 +17,15 @@ void StreamConnection::watch_input() {
   if (!is_closing_) watch_.go_full(sending_.has_unsent());
 }
 
-// With the lease free. Whether something has come through shared memory that nobody has read; if not
-// the bell rings for what comes from now on.
+// With the lease free. Whether something has come through shared memory that nobody has read; if
+// not the bell rings for what comes from now on.
 bool StreamConnection::has_unread() {
   SharedCarrier* const shared = layers_.shared();
   return shared != nullptr && !is_closing_ && watch_.is_full() && shared->rest();
 }
 
-// Where nobody reads, and input is watched for from now on: a socket tells of input that is there, a
-// ring does not.
+// Where nobody reads, and input is watched for from now on: a socket tells of input that is there,
+// a ring does not.
 void StreamConnection::ring_or_read() {
   if (has_unread()) read_soon(false);
 }

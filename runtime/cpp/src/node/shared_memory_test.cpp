@@ -2,8 +2,8 @@
 // Two nodes that exchange their messages through shared memory: who has it, processes that are
 // killed, and a memory that is written over at any time.
 #include <gtest/gtest.h>
-
 #include <signal.h>
+#include <sys/mman.h>
 
 #include <array>
 #include <atomic>
@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "runtime/cpp/src/node/testing/child.hpp"
@@ -42,6 +43,33 @@ std::vector<Mapping> mappings() {
   }
   return found;
 }
+
+// The same memory at another place, where it stays for as long as this exists.
+class SecondMapping {
+ public:
+  explicit SecondMapping(const Mapping& first)
+      : bytes_(::mremap(first.begin, 0, first.size, MREMAP_MAYMOVE)), size_(first.size) {}
+  SecondMapping(SecondMapping&& other) noexcept
+      : bytes_(std::exchange(other.bytes_, MAP_FAILED)), size_(other.size_) {}
+  SecondMapping& operator=(SecondMapping&&) = delete;
+  ~SecondMapping() {
+    if (is_there()) ::munmap(bytes_, size_);
+  }
+
+  // False when the first one has gone before.
+  [[nodiscard]] bool is_there() const { return bytes_ != MAP_FAILED; }
+  // Something at a place of it, of the words most of the time.
+  void scribble(std::mt19937_64& random) const {
+    const std::size_t most = random() % 4 == 0 ? size_ : std::size_t{0x300};
+    const std::uint64_t value = random() >> (random() % 64);
+    const std::size_t at = random() % (most - sizeof value) & ~std::size_t{3};
+    std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, 1 + random() % sizeof value);
+  }
+
+ private:
+  void* bytes_;
+  std::size_t size_;
+};
 
 class SharedMemory : public ::testing::Test {
  protected:
@@ -150,7 +178,7 @@ TEST_F(SharedMemory, AServerMayBeKilledAtAnyTime) {
   Node client(options());
   for (int round = 0; round < 150 / slowness(); ++round) {
     Child server(words({"serve"}), RR_SHARED_MEMORY_PEER);
-    auto counter = client.connect<CounterStub>(server.wait_for("ready "));
+    auto counter = client.connect<CounterStub>(server.wait_for("ready"));
     std::atomic<int> failed{0};
     std::vector<std::thread> callers;
     for (int caller = 0; caller < 2; ++caller) {
@@ -208,18 +236,16 @@ TEST_F(SharedMemory, MayBeWrittenOverByTheOtherSide) {
   for (int round = 0; round < 200 / slowness(); ++round) {
     auto counter = client.connect<CounterStub>(url(server.node));
     counter->get_value();
+    std::vector<SecondMapping> memories;
+    for (const Mapping& mapping : mappings()) {
+      SecondMapping second(mapping);
+      if (second.is_there()) memories.push_back(std::move(second));
+    }
     std::atomic<bool> is_over{false};
     std::thread writer([&, seed = random()] {
       std::mt19937_64 chance(seed);
-      const auto found = mappings();
-      while (!is_over) {
-        if (found.empty()) return;
-        const Mapping& memory = found[chance() % found.size()];
-        // The words most of the time.
-        const std::size_t most = chance() % 4 == 0 ? memory.size : std::size_t{0x300};
-        const std::uint64_t value = chance() >> (chance() % 64);
-        const std::size_t at = chance() % (most - sizeof value) & ~std::size_t{3};
-        std::memcpy(memory.begin + at, &value, 1 + chance() % sizeof value);
+      while (!is_over && !memories.empty()) {
+        memories[chance() % memories.size()].scribble(chance);
         if (chance() % 4 == 0) std::this_thread::yield();
       }
     });

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other process of the tests of shared memory, which is killed at any time.
 //   shared_memory_peer FOLDER serve       a counter; says `ready URL`
-//   shared_memory_peer FOLDER call URL    calls one without end; says `calling` after the first call
+//   shared_memory_peer FOLDER call URL    calls one without end; says `calling` after the first
+//   call
 #include <iostream>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "runtime/cpp/src/node/testing/counter.hpp"
 #include "rr/node.hpp"
+#include "runtime/cpp/src/node/testing/counter.hpp"
 
 namespace {
 
