@@ -346,6 +346,8 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
     } else {
       is_again = !is_paused() && lease_.is_asked_again();
       if (!watch_.is_pinned()) watch_input();
+      // What runs now may take long, and nobody looks into a ring meanwhile.
+      if (has_strand || !scratch.deferred.empty()) ring_or_read();
     }
   }
   if (next != nullptr) platform::wake(next);
