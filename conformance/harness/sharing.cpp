@@ -17,7 +17,7 @@
 namespace rr::conformance {
 namespace {
 
-constexpr Milliseconds limit{3000};
+constexpr Milliseconds answer_patience{3000};
 constexpr std::size_t ring_size = 4096;  // so that messages go around it often
 constexpr std::chrono::microseconds no_spin{0};
 
@@ -42,7 +42,7 @@ rr::MessageTree asked(Stream& stream, const rr::MessageTree& request, rr::EntryT
   stream.send(rr::write_tree(request));
   Bytes bytes;
   rr::MessageTree answer;
-  if (stream.receive(bytes, limit) != Arrival::message || !rr::read_tree(bytes, answer) ||
+  if (stream.receive(bytes, answer_patience) != Arrival::message || !rr::read_tree(bytes, answer) ||
       answer.entries.size() != 1 || answer.entries[0].type != answer_type ||
       answer.entries[0].error != 0) {
     throw std::runtime_error("there is no shared memory");
