@@ -121,6 +121,15 @@ TEST_F(SharedRingTest, WakesWhoeverHasAskedForIt) {
   EXPECT_EQ(words_.reader.load(), Steps::runs);
 }
 
+TEST_F(SharedRingTest, SaysWhereTheWriterRan) {
+  EXPECT_EQ(reader_.ring().words, &words_);
+  EXPECT_EQ(writer_.ring().bytes, bytes_.data());
+  words_.processor = 1'000'000;
+  EXPECT_TRUE(reader_.is_written_elsewhere());
+  write("here");
+  EXPECT_LT(words_.processor.load(), 1'000'000U);
+}
+
 TEST_F(SharedRingTest, TellsOfRoomOnce) {
   write(std::string(ring_size, 'x'));
   EXPECT_FALSE(writer_.want_room());
