@@ -46,6 +46,26 @@ class SharedRingTest : public ::testing::Test {
   std::uint32_t room_wakes_ = 0;
 };
 
+TEST(RingSteps, SayWhoIsToBeWoken) {
+  using Ring = RingSteps<Synchronization>;
+  SharedRing::Words words;
+  std::atomic<bool> is_interrupted{true};
+  EXPECT_EQ(Ring::publish(words, 1), Ring::runs);
+  EXPECT_TRUE(Ring::watch(words, 0));
+  EXPECT_FALSE(Ring::watch(words, 1));
+  EXPECT_EQ(Ring::publish(words, 2), Ring::watches);
+  EXPECT_FALSE(Ring::interrupt(words));
+  Ring::sleep(words, 2, is_interrupted, 20s);
+  EXPECT_EQ(words.reader.load(), Ring::runs);
+  words.reader = Ring::sleeps;
+  EXPECT_TRUE(Ring::interrupt(words));
+  EXPECT_EQ(Ring::release(words, 1), 0U);
+  EXPECT_FALSE(Ring::want_room(words, Ring::by_bell, 3, 2));
+  EXPECT_TRUE(Ring::want_room(words, Ring::by_word, 2, 2));
+  EXPECT_EQ(Ring::release(words, 2), std::uint32_t{Ring::by_bell | Ring::by_word});
+  EXPECT_EQ(words.room.load(), 0U);
+}
+
 TEST_F(SharedRingTest, GivesWhatWasWritten) {
   EXPECT_EQ(read(), "nothing");
   EXPECT_EQ(write("one"), 3);
@@ -128,6 +148,17 @@ TEST_F(SharedRingTest, SaysWhereTheWriterRan) {
   EXPECT_TRUE(reader_.is_written_elsewhere());
   write("here");
   EXPECT_LT(words_.processor.load(), 1'000'000U);
+}
+
+TEST_F(SharedRingTest, AReaderThatWatchesIsNotInterrupted) {
+  EXPECT_FALSE(reader_.watch());
+  writer_.interrupt_reader();
+  EXPECT_EQ(words_.reader.load(), Steps::watches);
+  reader_.run();
+  EXPECT_EQ(words_.reader.load(), Steps::runs);
+  words_.reader = Steps::sleeps;
+  writer_.interrupt_reader();
+  EXPECT_EQ(words_.reader.load(), Steps::runs);
 }
 
 TEST_F(SharedRingTest, TellsOfRoomOnce) {
