@@ -83,7 +83,7 @@ set(robdef_layers
   "runtime/matlab: runtime/cpp/include/rr"
   "runtime/matlab/test: runtime/cpp/include/rr runtime/cpp/src/dynamic/testing runtime/matlab/src/queue.hpp"
   "runtime/cpp/src/tap: runtime/cpp/include/rr runtime/cpp/src/platform"
-  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
+  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/shared_carrier.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
   "runtime/cpp/src/node/local_channel_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
   "runtime/cpp/src/node/local_trust_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
@@ -103,7 +103,7 @@ set(robdef_layers
   "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   # The suite's connections have the same layers around them as those of nodes.
-  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/components.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/openssl_tls.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
+  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/components.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/openssl_tls.hpp runtime/cpp/src/channel/operations.hpp runtime/cpp/src/channel/shared_carrier.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp runtime/cpp/src/platform/shared_memory.hpp"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   # Beside a robot: what users of the runtime see. One source reads TOML.

@@ -13,6 +13,7 @@
 
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/entry_types.hpp"
+#include "conformance/harness/sharing.hpp"
 #include "conformance/harness/starttls.hpp"
 #include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/channel/openssl_tls.hpp"
@@ -42,8 +43,8 @@ rr::NodeId id_of(const std::string& text) {
 }  // namespace
 
 const std::vector<std::string>& channel_names() {
-  static const std::vector<std::string> names = {"tcp",    "local", "ws",   "tls",
-                                                 "rrs+ws", "wss",   "intra"};
+  static const std::vector<std::string> names = {"tcp", "local",  "shm", "ws",
+                                                 "tls", "rrs+ws", "wss", "intra"};
   return names;
 }
 
@@ -104,7 +105,7 @@ bool Channel::has_web_socket() const { return name_.ends_with("ws") || name_ == 
 Json Channel::settings(const Node& node) {
   if (name_ == "tcp") return nullptr;
   Json json = {{"name", name_}};
-  if (name_ == "local") {
+  if (is_local()) {
     if (folder_.empty()) folder_ = new_folder();
     json["path"] = socket().string();
   } else if (name_ == "tls" || name_ == "rrs+ws" || name_ == "wss") {
@@ -116,7 +117,11 @@ Json Channel::settings(const Node& node) {
 }
 
 Stream Channel::connect(const Scenario& scenario, const std::string& host, int port) {
-  if (name_ == "local") return Stream::connect(socket());
+  if (is_local()) {
+    Stream stream = Stream::connect(socket());
+    if (name_ == "shm") share_as_client(stream);
+    return stream;
+  }
   Stream stream = Stream::connect(host, port);
   if (plays_as_recorded() && !scenario.web_socket.is_empty()) {
     stream.put(recorded_web_socket_client(scenario.web_socket), handshake_limit);
@@ -139,7 +144,7 @@ Stream Channel::connect(const Scenario& scenario, const std::string& host, int p
 // By local sockets a node is asked for by its id or its name, not by both (04, section 4.1).
 Frame Channel::as_sent(const Frame& frame) const {
   rr::MessageTree message;
-  if (name_ != "local" || !opens(frame) || !rr::read_tree(frame.bytes, message) ||
+  if (!is_local() || !opens(frame) || !rr::read_tree(frame.bytes, message) ||
       message.receiver_node.is_any() || message.receiver_name.empty()) {
     return frame;
   }
@@ -151,13 +156,13 @@ Frame Channel::as_sent(const Frame& frame) const {
 }
 
 replay::Listener Channel::listen() {
-  if (name_ != "local") return replay::Listener(0);
+  if (!is_local()) return replay::Listener(0);
   if (folder_.empty()) folder_ = new_folder();
   return replay::Listener(socket());
 }
 
 std::string Channel::place(const Scenario& scenario, int port) const {
-  if (name_ == "local") return "rr+local://" + socket().string() + "?";
+  if (is_local()) return "rr+local://" + socket().string() + "?";
   if (is_in_process()) return "rr+intra:///?";
   static const std::map<std::string, std::string> schemes = {{"tcp", "rr+tcp"},
                                                              {"ws", "rr+ws"},
@@ -173,6 +178,7 @@ void Channel::answer(Stream& stream, const Scenario& scenario) {
   if (plays_as_recorded() && !scenario.web_socket.is_empty()) {
     stream.put(recorded_web_socket_service(scenario.web_socket), handshake_limit);
   }
+  if (name_ == "shm") share_as_service(stream);
   if (name_ == "wss") {
     stream.put(tls_of(scenario.service.id).make_server(false), handshake_limit);
   }

@@ -26,8 +26,9 @@ namespace rr::conformance {
 /// Both nodes in one process.
 inline constexpr std::string_view in_process = "intra";
 
-/// `tcp`, `local`, `ws`, `tls` (TCP with STARTTLS), `rrs+ws` (a web socket with STARTTLS inside),
-/// `wss` (a web socket inside of TLS), `intra` (both nodes in one process).
+/// `tcp`, `local`, `shm` (a local socket with shared memory), `ws`, `tls` (TCP with STARTTLS),
+/// `rrs+ws` (a web socket with STARTTLS inside), `wss` (a web socket inside of TLS), `intra` (both
+/// nodes in one process).
 const std::vector<std::string>& channel_names();
 
 /// Both sides of one channel, with what they need: a folder for local sockets, and an authority of
@@ -65,6 +66,7 @@ class Channel {
   class Secrets;
 
   [[nodiscard]] bool has_web_socket() const;
+  [[nodiscard]] bool is_local() const { return name_ == "local" || name_ == "shm"; }
   [[nodiscard]] std::filesystem::path socket() const {
     return folder_ / (std::to_string(scenarios_) + ".sock");
   }

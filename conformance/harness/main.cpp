@@ -29,7 +29,7 @@ play: plays a folder of captures. With --runner, a language's runner is the serv
   decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
   command) brings it to its first state before each scenario; with --listen, a client. Deviations are
   borrowed when the list was written for other captures: not each of them must occur.
-  --channels are those that a runner is played over, tcp without it: tcp local ws tls rrs+ws wss intra.
+  --channels are those that a runner is played over, tcp without it: tcp local shm ws tls rrs+ws wss intra.
   --jobs scenarios are played with the runner at once (1).
   --roles leaves out what a language does not have: it plays these of decode, encode, service, client.
 definitions: writes the service definitions of the folder, for a compiler.

@@ -51,13 +51,14 @@ NodeOptions node_options(const Json& request) {
     options.tls.certificate_file = channel["certificate"];
     options.tls.authority_files = {channel.at("authority").get<std::string>()};
   }
+  options.local.shared_memory = channel.value("name", "") == "shm";
   return options;
 }
 
 int listen(Node& node, const Json& request) {
   const Json channel = request.value("channel", Json::object());
   const std::string name = channel.value("name", "tcp");
-  if (name == "local") {
+  if (name == "local" || name == "shm") {
     node.listen("rr+local://" + channel.at("path").get<std::string>());
     return 0;
   }

@@ -36,5 +36,6 @@ std::span<const Model> gathering_models();
 std::span<const Model> newest_models();
 std::span<const Model> strand_models();
 std::span<const Model> exchange_models();
+std::span<const Model> ring_models();
 
 }  // namespace rr::models

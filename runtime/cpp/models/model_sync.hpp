@@ -264,6 +264,11 @@ struct ModelSync {
                        Source source = Source::current()) {
     return word.sleep(seen, deadline != channel::never, source);
   }
+  /// With Clock::duration::max() for as long as it takes.
+  static void sleep_on_shared(const SleepWord& word, std::uint32_t seen,
+                              channel::Clock::duration time, Source source = Source::current()) {
+    word.sleep(seen, time != channel::Clock::duration::max(), source);
+  }
   static void wake(const SleepWord* word, Source source = Source::current()) {
     SleepWord::wake(word, source);
   }

@@ -108,6 +108,9 @@ struct LocalOptions {
   std::chrono::milliseconds heartbeat_period{30'000};
   /// As NodeOptions::receive_timeout, of local sockets.
   std::chrono::milliseconds receive_timeout{600'000};
+  /// Whether messages go through memory that both nodes map, where both have this, instead of the
+  /// socket (docs/reference/shared_memory.md). No effect where the system has none.
+  bool shared_memory = false;
 };
 
 /// How many bytes the peers of a node may make it hold, all connections together
@@ -247,6 +250,10 @@ struct NodeOptions {
   MetricsOptions metrics{};
   /// Local sockets.
   LocalOptions local{};
+  /// How long whoever waits for a message keeps looking for it before it sleeps; with shared memory
+  /// only, and only while the other side runs on another processor. Answers come sooner by the time
+  /// that a wake-up takes, and the processor is busy meanwhile. 1 ms at most. 0: it sleeps at once.
+  std::chrono::microseconds spin{0};
   /// Where nodes find each other by `rr+intra`; null: all of the process do.
   std::shared_ptr<IntraSpace> intra{};
   /// Channels of one's own by the schemes of their URLs, which must be other than ours.

@@ -15,6 +15,8 @@ struct Buffer;
 
 namespace rr::channel {
 
+class SharedCarrier;
+
 /// Carries what a connection sends and receives where that is not the plain bytes of its socket,
 /// whose readiness still says when there is something to receive.
 ///
@@ -50,6 +52,8 @@ class Carrier {
   virtual void set_on_room(std::function<void()> on_room) = 0;
   /// The connection has ended.
   virtual void end() = 0;
+  /// This, where it is one whose socket is a bell; else null.
+  [[nodiscard]] virtual SharedCarrier* shared() { return nullptr; }
   /// Why it cannot go on, for people; empty when there is nothing to say.
   [[nodiscard]] virtual std::string failure() const { return {}; }
 };

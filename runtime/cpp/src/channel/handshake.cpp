@@ -22,13 +22,19 @@ Error reported_error(Decoder& decoder, const Entry& entry) {
           std::string(has_text ? text.text() : "the other side refused the connection")};
 }
 
+/// What is answered.
+struct Asked {
+  std::string_view member;
+  EntryType answer = EntryType::stream_op_ret;
+  bool has_standard_strings = false;
+};
+
 // Reads the answer to a stream operation. Throws when it is something else.
-void read_answer(std::span<const std::byte> answer, std::string_view operation,
-                 const NodeOptions& options, const std::string& place, Message& message,
-                 Entry& entry) {
-  if (!read_message(answer, options.limits, false, message, nullptr) ||
-      !EntryReader(message).next(entry) || entry.type != EntryType::stream_op_ret ||
-      entry.member != operation) {
+void read_answer(std::span<const std::byte> answer, const Asked& asked, const NodeOptions& options,
+                 const std::string& place, Message& message, Entry& entry) {
+  if (!read_message(answer, options.limits, asked.has_standard_strings, message, nullptr) ||
+      !EntryReader(message).next(entry) || entry.type != asked.answer ||
+      entry.member != asked.member) {
     throw Error(ErrorCode::protocol_error, place + " speaks another protocol");
   }
 }
@@ -59,7 +65,7 @@ void check_create_connection(std::span<const std::byte> answer, const Url& url,
                              const NodeOptions& options, const std::string& place, Agreed& agreed) {
   const auto message = std::make_unique<Message>();
   Entry entry;
-  read_answer(answer, create_connection, options, place, *message, entry);
+  read_answer(answer, {create_connection}, options, place, *message, entry);
   Decoder decoder(message->version, &message->strings);
   // An old server does not know the operation; it is used as such servers are.
   if (entry.error != 0 && static_cast<ErrorCode>(entry.error) != ErrorCode::protocol_error) {
@@ -85,6 +91,55 @@ void check_create_connection(std::span<const std::byte> answer, const Url& url,
   agreed.answer.assign(answer.begin(), answer.end());
 }
 
+namespace {
+
+std::vector<std::byte> request_of(EntryType type, std::string_view member, const Agreed& agreed,
+                                  const NodeOptions& options) {
+  Writer writer;
+  writer.reset(agreed.agreement.version);
+  writer.entry({.type = type, .member = member}, 0, writer.position());
+  writer.message({.sender_node = options.id, .receiver_node = agreed.remote_node}, 1);
+  return writer.copy();
+}
+
+}  // namespace
+
+std::vector<std::byte> capability_request(std::string_view capability, const Agreed& agreed,
+                                          const NodeOptions& options) {
+  return request_of(EntryType::stream_check_capability, capability, agreed, options);
+}
+
+std::uint32_t check_capability(std::span<const std::byte> answer, std::string_view capability,
+                               const Agreed& agreed, const NodeOptions& options,
+                               const std::string& place) {
+  const auto message = std::make_unique<Message>();
+  Entry entry;
+  const Asked asked{capability, EntryType::stream_check_capability_ret,
+                    agreed.agreement.standard_strings};
+  read_answer(answer, asked, options, place, *message, entry);
+  Decoder decoder(message->version, &message->strings);
+  Element element;
+  if (entry.error != 0 ||
+      !find_element(decoder, entry.elements, entry.element_count, "return", element)) {
+    return 0;
+  }
+  const auto level = read_codes(element);
+  return level && level->size() == 1 ? level->front() : 0;
+}
+
+std::vector<std::byte> share_memory_request(const Agreed& agreed, const NodeOptions& options) {
+  return request_of(EntryType::stream_op, share_memory, agreed, options);
+}
+
+bool check_share_memory(std::span<const std::byte> answer, const Agreed& agreed,
+                        const NodeOptions& options, const std::string& place) {
+  const auto message = std::make_unique<Message>();
+  Entry entry;
+  const Asked asked{share_memory, EntryType::stream_op_ret, agreed.agreement.standard_strings};
+  read_answer(answer, asked, options, place, *message, entry);
+  return entry.error == 0;
+}
+
 std::vector<std::byte> start_tls_request(const Url& url, bool is_mutual) {
   Writer writer;
   writer.reset(MessageVersion::v2);
@@ -102,7 +157,7 @@ NodeId check_start_tls(std::span<const std::byte> answer, const Url& url,
                        const NodeOptions& options, const std::string& place) {
   const auto message = std::make_unique<Message>();
   Entry entry;
-  read_answer(answer, start_tls, options, place, *message, entry);
+  read_answer(answer, {start_tls}, options, place, *message, entry);
   Decoder decoder(message->version, &message->strings);
   if (static_cast<ErrorCode>(entry.error) == ErrorCode::node_not_found) {
     throw reported_error(decoder, entry);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rr/node_id.hpp"
@@ -43,6 +45,19 @@ std::vector<std::byte> create_connection_request(const Url& url, const NodeOptio
 /// side in errors. Throws rr::Error.
 void check_create_connection(std::span<const std::byte> answer, const Url& url,
                              const NodeOptions& options, const std::string& place, Agreed& agreed);
+
+/// What a client asks for a stream capability (04, section 4.5).
+std::vector<std::byte> capability_request(std::string_view capability, const Agreed& agreed,
+                                          const NodeOptions& options);
+/// The level in the answer to it. Throws rr::Error.
+std::uint32_t check_capability(std::span<const std::byte> answer, std::string_view capability,
+                               const Agreed& agreed, const NodeOptions& options,
+                               const std::string& place);
+/// What a client asks for memory that both sides share.
+std::vector<std::byte> share_memory_request(const Agreed& agreed, const NodeOptions& options);
+/// Whether the answer to it brings some. Throws rr::Error.
+bool check_share_memory(std::span<const std::byte> answer, const Agreed& agreed,
+                        const NodeOptions& options, const std::string& place);
 
 /// What a client says before everything else to change over to TLS (04, section 6).
 std::vector<std::byte> start_tls_request(const Url& url, bool is_mutual);

@@ -15,6 +15,7 @@
 #include "runtime/cpp/src/channel/peer_layers.hpp"
 #include "runtime/cpp/src/channel/repeated_request.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
+#include "runtime/cpp/src/channel/shared_carrier.hpp"
 #include "runtime/cpp/src/channel/testing/socket_pair.hpp"
 #include "runtime/cpp/src/platform/sockets.hpp"
 
@@ -171,6 +172,29 @@ TEST_F(LayersTest, EndAndFailureAreTheEnd) {
   std::array<std::byte, 10> room;
   EXPECT_EQ(other.receive(room, true), 0);
   EXPECT_EQ(other.failure(), "exclaimed");
+}
+
+TEST_F(LayersTest, SharedMemoryTakesThePlaceOfTheSocket) {
+  if (!platform::has_shared_memory()) GTEST_SKIP() << "this system has no shared memory";
+  const NodeOptions options;
+  const LinkTerms link = tcp_terms(options);
+  const ConnectionTap tap(options, false);
+  SendQueue sending({}, tap);
+  PeerLayers layers({.is_server = true}, link, sending, nullptr);
+  EXPECT_EQ(layers.shared(), nullptr);
+  platform::Descriptor handle;
+  std::error_code error;
+  auto carrier = std::make_unique<SharedCarrier>(SharedRings::make(4096, handle, error), true,
+                                                 sockets_.other(), std::chrono::microseconds(0));
+  SharedCarrier* const shared = carrier.get();
+  layers.share(std::move(carrier));
+  EXPECT_EQ(layers.shared(), shared);
+  EXPECT_EQ(layers.carrier(), shared);
+  EXPECT_FALSE(layers.is_layered());
+  EXPECT_TRUE(layers.begins_sharing());
+  layers.forget_sharing();
+  EXPECT_FALSE(layers.begins_sharing());
+  EXPECT_EQ(layers.shared(), shared);
 }
 
 TEST_F(LayersTest, OneProvesWhoTheOtherSideIs) {

@@ -31,6 +31,8 @@ struct LinkTerms {
   std::optional<platform::UserId> only_user{};
   /// Nothing but TLS is served.
   bool is_tls_required = false;
+  /// Clients may ask for shared memory.
+  bool shares_memory = false;
 };
 
 /// Those of TCP.

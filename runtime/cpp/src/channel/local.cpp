@@ -14,6 +14,7 @@
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
 #include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/platform/local_socket.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 #include "runtime/cpp/src/platform/trusted_folder.hpp"
 
 namespace rr::channel {
@@ -48,6 +49,7 @@ LinkTerms local_terms(const NodeOptions& options) {
   terms.heartbeat_period = saturated(options.local.heartbeat_period);
   terms.receive_timeout = saturated(options.local.receive_timeout);
   terms.size_before_connect = options.limits.message_size;  // no rule for it (04, section 7.5)
+  terms.shares_memory = options.local.shared_memory && platform::has_shared_memory();
   return terms;
 }
 

@@ -8,8 +8,11 @@
 
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/operations.hpp"
+#include "runtime/cpp/src/channel/shared_carrier.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 
 namespace rr::channel {
 namespace {
@@ -31,11 +34,24 @@ std::vector<OpeningStep> opening_steps(std::string_view scheme) {
   return steps;
 }
 
+namespace {
+
+std::vector<OpeningStep> steps_to(const Url& url, const NodeOptions& options) {
+  std::vector<OpeningStep> steps = opening_steps(url.scheme);
+  if (url.scheme == "rr+local" && options.local.shared_memory && platform::has_shared_memory()) {
+    steps.push_back(OpeningStep::ask_memory);
+    steps.push_back(OpeningStep::get_memory);
+  }
+  return steps;
+}
+
+}  // namespace
+
 Opening::Opening(const Address& address, const Url& url, const ChannelContext& context)
     : url_(url),
       context_(context),
       options_(*context.options),
-      steps_(opening_steps(url.scheme)),
+      steps_(steps_to(url, options_)),
       place_(address.text()),
       servers_(address.servers) {
   std::error_code error;
@@ -81,7 +97,16 @@ std::optional<Agreed> Opening::go_on() {
     return std::nullopt;
   }
   if (!receive_answer()) return std::nullopt;
-  return finish();
+  if (step == OpeningStep::agree) agree();
+  if (step == OpeningStep::ask_memory &&
+      check_capability(answer_, shared_memory_capability, agreed_, options_, place_) !=
+          shared_memory_level) {
+    return finish();
+  }
+  if (step == OpeningStep::get_memory) open_memory();
+  if (++step_ == steps_.size()) return finish();
+  next_step();
+  return std::nullopt;
 }
 
 void Opening::fail_connecting(const std::error_code& error) const {
@@ -132,6 +157,12 @@ void Opening::next_step() {
       request_ = create_connection_request(url_, options_);
       send(request_);
       break;
+    case OpeningStep::ask_memory:
+      send(capability_request(shared_memory_capability, agreed_, options_));
+      break;
+    case OpeningStep::get_memory:
+      send(share_memory_request(agreed_, options_));
+      break;
   }
 }
 
@@ -150,9 +181,14 @@ void Opening::send(std::span<const std::byte> message) {
 }
 
 std::ptrdiff_t Opening::receive(std::span<std::byte> room) {
-  const std::ptrdiff_t size = carrier_
-                                  ? carrier_->receive(room, false)
-                                  : platform::receive(socket_.get(), room, platform::Wait::none);
+  std::ptrdiff_t size = 0;
+  if (carrier_) {
+    size = carrier_->receive(room, false);
+  } else if (steps_[step_] == OpeningStep::get_memory) {
+    size = platform::receive_with_handle(socket_.get(), room, memory_);
+  } else {
+    size = platform::receive(socket_.get(), room, platform::Wait::none);
+  }
   if (carrier_) carrier_->flush();
   if (size > 0) return size;
   if (size == platform::nothing_now) return 0;
@@ -193,21 +229,33 @@ bool Opening::receive_answer() {
   }
 }
 
-std::optional<Agreed> Opening::finish() {
-  Agreed agreed;
+void Opening::agree() {
   if (carrier_) {
-    agreed.certified_node = carrier_->certified_node();
-    agreed.proof = carrier_->take_proof();
+    agreed_.certified_node = carrier_->certified_node();
+    agreed_.proof = carrier_->take_proof();
   }
-  check_create_connection(answer_, url_, options_, place_, agreed);
-  if (carrier_ && carrier_->is_encrypted() && agreed.certified_node.is_any() &&
-      context_.tls->is_pinned(agreed.remote_node)) {
+  check_create_connection(answer_, url_, options_, place_, agreed_);
+  if (carrier_ && carrier_->is_encrypted() && agreed_.certified_node.is_any() &&
+      context_.tls->is_pinned(agreed_.remote_node)) {
     fail("the node at " + place_ + " says that it is one whose certificate is another");
   }
-  agreed.socket = std::move(socket_);
-  agreed.carrier = std::move(carrier_);
-  agreed.request = std::move(request_);
-  return agreed;
+  agreed_.request = std::move(request_);
+}
+
+// The other side has changed over with its answer, so that there is no way back.
+void Opening::open_memory() {
+  if (!check_share_memory(answer_, agreed_, options_, place_)) return;
+  std::error_code error;
+  SharedRings rings = SharedRings::open(memory_, error);
+  if (!rings) fail(place_ + " shares memory that cannot be used: " + error.message());
+  agreed_.carrier =
+      std::make_unique<SharedCarrier>(std::move(rings), false, socket_.get(), options_.spin);
+}
+
+std::optional<Agreed> Opening::finish() {
+  agreed_.socket = std::move(socket_);
+  if (carrier_) agreed_.carrier = std::move(carrier_);
+  return std::move(agreed_);
 }
 
 }  // namespace rr::channel

@@ -39,6 +39,8 @@ class Opening {
   bool receive_answer();
   std::ptrdiff_t receive(std::span<std::byte> room);
   void send(std::span<const std::byte> message);
+  void agree();
+  void open_memory();
   std::optional<Agreed> finish();
   [[noreturn]] void fail_reading(std::ptrdiff_t size) const;
   LayeredCarrier& carrier();
@@ -54,6 +56,8 @@ class Opening {
   const std::vector<platform::UserId> servers_;
   bool is_connected_ = false;
   NodeId said_node_;  // what the other side claimed before TLS
+  Agreed agreed_;     // from agree() on
+  Descriptor memory_;
   std::vector<std::byte> request_;
   std::vector<std::byte> answer_;
   std::size_t answer_size_ = 0;  // once known

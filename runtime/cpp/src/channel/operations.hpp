@@ -17,6 +17,12 @@ inline constexpr std::string_view create_connection = "CreateConnection";
 inline constexpr std::string_view get_remote_node_id = "GetRemoteNodeID";
 inline constexpr std::string_view start_tls = "STARTTLS";
 
+// Of this runtime: shared memory (docs/reference/shared_memory.md). A stream capability, whose
+// level is the version of the layout, and the operation.
+inline constexpr std::string_view shared_memory_capability = "robdef.shared_memory";
+inline constexpr std::uint32_t shared_memory_level = 1;
+inline constexpr std::string_view share_memory = "robdef.ShareMemory";
+
 /// An array of uint32, before what was written so far.
 void write_codes(Writer& writer, std::string_view name, std::span<const std::uint32_t> codes);
 

@@ -92,20 +92,30 @@ OwnAnswer OwnRequests::answer_stream_op(const Message& message, const Entry& ent
     return answer_create_connection(message, entry);
   }
   if (is_start_tls && side_.layers.can_start_tls()) return answer_start_tls(message, entry);
+  const bool shares_memory = entry.member == share_memory && side_.may_share;
+  if (is_start_tls) {
+    write_refusal(message, entry, ErrorCode::connection_error, "Server certificate not loaded");
+  } else if (entry.member != get_remote_node_id && !shares_memory) {
+    write_refusal(message, entry, ErrorCode::protocol_error, "Invalid Stream Operation");
+  } else {
+    writer_.reset(side_.version);
+    writer_.entry(answer_header(entry), 0, writer_.position());
+    writer_.message(header_to(message), 1);
+  }
+  return {.is_answer = true, .shares_memory = shares_memory};
+}
+
+void OwnRequests::write_refusal(const Message& message, const Entry& entry, ErrorCode code,
+                                std::string_view why) {
   writer_.reset(side_.version);
   const std::size_t end = writer_.position();
-  ErrorCode error = ErrorCode::none;
-  std::uint32_t count = 0;
-  if (is_start_tls) {
-    error = ErrorCode::connection_error;
-    count = write_error(writer_, error, "Server certificate not loaded");
-  } else if (entry.member != get_remote_node_id) {
-    error = ErrorCode::protocol_error;
-    count = write_error(writer_, error, "Invalid Stream Operation");
-  }
-  writer_.entry(answer_header(entry, error), count, end);
+  const std::uint32_t count = write_error(writer_, code, why);
+  writer_.entry(answer_header(entry, code), count, end);
   writer_.message(header_to(message), 1);
-  return {.is_answer = true};
+}
+
+void OwnRequests::refuse(const Message& message, const Entry& entry, std::string_view why) {
+  write_refusal(message, entry, ErrorCode::out_of_system_resource, why);
 }
 
 OwnAnswer OwnRequests::answer_create_connection(const Message& message, const Entry& entry) {
@@ -184,7 +194,9 @@ OwnAnswer OwnRequests::answer_start_tls(const Message& message, const Entry& ent
 OwnAnswer OwnRequests::answer_capability(const Message& message, const Entry& entry) {
   writer_.reset(side_.version);
   const std::size_t end = writer_.position();
-  const std::array<std::uint32_t, 1> level = {stream_capability(entry.member)};
+  const bool may_share = entry.member == shared_memory_capability && side_.may_share;
+  const std::array<std::uint32_t, 1> level = {may_share ? shared_memory_level
+                                                        : stream_capability(entry.member)};
   write_codes(writer_, "return", level);
   writer_.entry(answer_header(entry), 1, end);
   writer_.message({.sender_node = side_.options.id, .receiver_node = message.sender_node}, 1);

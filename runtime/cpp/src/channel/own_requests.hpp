@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
+#include "rr/error.hpp"
 #include "rr/options.hpp"
 #include "rr/reader.hpp"
 #include "rr/writer.hpp"
@@ -21,6 +23,7 @@ struct OwnSide {
   const NodeId& remote_node;  ///< zero until the other side has said who it is
   MessageVersion version;     ///< agreed
   bool is_server;
+  bool may_share = false;  ///< memory with the client
 };
 
 /// Whether an entry is for the connection itself, be it an answer to one of its own requests.
@@ -32,7 +35,8 @@ struct OwnAnswer {
   /// The other side has said who it is, and what is agreed with it; before the answer is sent.
   std::optional<Agreement> agreement{};
   bool begins_tls = false;
-  bool is_mutual = false;  ///< the client wants its certificate to be asked for
+  bool is_mutual = false;      ///< the client wants its certificate to be asked for
+  bool shares_memory = false;  ///< with a memory; where there is none refuse() has another answer
 };
 
 /// Writes answers to entries that are is_own().
@@ -40,6 +44,8 @@ class OwnRequests {
  public:
   OwnRequests(const OwnSide& side, Writer& writer) : side_(side), writer_(writer) {}
   [[nodiscard]] OwnAnswer answer(const Message& message, const Entry& entry);
+  /// The answer to a stream operation that is not possible, for people.
+  void refuse(const Message& message, const Entry& entry, std::string_view why);
   /// The request that keeps a connection alive.
   void write_test();
 
@@ -49,6 +55,8 @@ class OwnRequests {
   OwnAnswer answer_start_tls(const Message& message, const Entry& entry);
   OwnAnswer answer_capability(const Message& message, const Entry& entry);
   OwnAnswer answer_test(const Message& message, const Entry& entry);
+  void write_refusal(const Message& message, const Entry& entry, ErrorCode code,
+                     std::string_view why);
   [[nodiscard]] bool is_for_this_node(const Message& message) const;
   [[nodiscard]] MessageHeader header_to(const Message& message) const;
 

@@ -29,9 +29,12 @@ class OwnRequestsTest : public ::testing::Test {
     Message message;
     Entry first;
     EXPECT_TRUE(read_message(request, {}, false, message, first));
-    const OwnSide side{options_, link_, layers_, remote_node_, MessageVersion::v2, is_server_};
+    const OwnSide side{options_,           link_,      layers_,   remote_node_,
+                       MessageVersion::v2, is_server_, may_share_};
     Writer writer;
-    const OwnAnswer result = OwnRequests(side, writer).answer(message, first);
+    OwnRequests own(side, writer);
+    const OwnAnswer result = own.answer(message, first);
+    if (must_refuse_) own.refuse(message, first, "not today");
     if (result.is_answer) {
       answer_ = writer.copy();
       EXPECT_TRUE(read_message(answer_, {}, false, answered_, entry_));
@@ -52,6 +55,8 @@ class OwnRequestsTest : public ::testing::Test {
   LinkTerms link_ = tcp_terms(options_);
   NodeId remote_node_;
   bool is_server_ = true;
+  bool may_share_ = false;
+  bool must_refuse_ = false;
   ConnectionTap tap_{options_, false};
   SendQueue sending_{{}, tap_};
   PeerLayers layers_{{.is_server = true}, link_, sending_, nullptr};
@@ -75,6 +80,19 @@ TEST_F(OwnRequestsTest, ATestIsAnswered) {
 TEST_F(OwnRequestsTest, AnAnswerIsNot) {
   EXPECT_FALSE(answer(EntryType::connection_test_ret, {}).is_answer);
   EXPECT_FALSE(answer(EntryType::stream_op_ret, create_connection).is_answer);
+}
+
+TEST_F(OwnRequestsTest, MemoryIsSharedWhereThatIsAllowed) {
+  EXPECT_FALSE(answer(EntryType::stream_op, share_memory).shares_memory);
+  EXPECT_EQ(error(), ErrorCode::protocol_error);
+  may_share_ = true;
+  EXPECT_TRUE(answer(EntryType::stream_op, share_memory).shares_memory);
+  EXPECT_EQ(error(), ErrorCode::none);
+  EXPECT_EQ(entry_.element_count, 0U);
+  must_refuse_ = true;
+  EXPECT_TRUE(answer(EntryType::stream_op, share_memory).shares_memory);
+  EXPECT_EQ(error(), ErrorCode::out_of_system_resource);
+  EXPECT_EQ(text("errorstring"), "not today");
 }
 
 TEST_F(OwnRequestsTest, TheFirstConnectionIsAgreedOn) {

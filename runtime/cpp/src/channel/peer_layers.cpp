@@ -13,7 +13,16 @@ namespace rr::channel {
 PeerLayers::PeerLayers(const Terms& terms, const LinkTerms& link, SendQueue& sending,
                        std::unique_ptr<Carrier> carrier)
     : terms_(terms), link_(link), sending_(sending), carrier_(std::move(carrier)) {
-  if (carrier_) sending_.set_carrier(carrier_.get());
+  if (!carrier_) return;
+  sending_.set_carrier(carrier_.get());
+  shared_ = carrier_->shared();
+}
+
+void PeerLayers::share(std::unique_ptr<SharedCarrier> carrier) {
+  SharedCarrier* const shared = carrier.get();
+  carrier_ = std::move(carrier);
+  begins_sharing_ = true;
+  shared_.store(shared, std::memory_order_release);
 }
 
 // TLS may be around everything, web sockets around messages, and nothing twice.

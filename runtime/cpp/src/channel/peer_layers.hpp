@@ -14,6 +14,7 @@
 #include "runtime/cpp/src/channel/layered_carrier.hpp"
 #include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/repeated_request.hpp"
+#include "runtime/cpp/src/channel/shared_carrier.hpp"
 
 namespace rr::channel {
 
@@ -57,6 +58,14 @@ class PeerLayers {
   void begin_tls();
   void forget_tls() { begins_tls_ = false; }
 
+  // Shared memory: bytes go through it from the next one on.
+  void share(std::unique_ptr<SharedCarrier> carrier);
+  /// Since bytes were taken last; once.
+  [[nodiscard]] bool begins_sharing() const { return begins_sharing_; }
+  void forget_sharing() { begins_sharing_ = false; }
+  /// Any thread: what carries it; null while nothing does.
+  [[nodiscard]] SharedCarrier* shared() const { return shared_.load(std::memory_order_acquire); }
+
   [[nodiscard]] bool is_encrypted() const;
   [[nodiscard]] bool can_start_tls() const;
   /// The scheme that a client would have to write to come here in the same way.
@@ -90,6 +99,8 @@ class PeerLayers {
   bool is_mutual_ = false;
   Bytes request_;  // that asked for TLS, until that begins
   bool has_bytes_behind_ = false;
+  bool begins_sharing_ = false;
+  std::atomic<SharedCarrier*> shared_{nullptr};  // carrier_, and never another one after it
   std::atomic<unsigned> around_{0};
   NodeId certified_node_;  // once, before is_proven_ is set
   std::atomic<bool> is_proven_{false};

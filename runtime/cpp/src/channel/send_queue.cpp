@@ -5,10 +5,12 @@
 #include <limits>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "runtime/cpp/src/channel/carrier.hpp"
 #include "runtime/cpp/src/channel/connection_tap.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 
 namespace rr::channel {
 
@@ -32,6 +34,19 @@ void SendQueue::set_carrier(Carrier* carrier) {
 Carrier* SendQueue::carrier() const {
   const MutexLock lock(mutex_);
   return carrier_;
+}
+
+bool SendQueue::change_over(Writer& last, const platform::Descriptor& handle, Carrier& carrier) {
+  const std::vector<std::byte> bytes = last.copy();
+  const MutexLock lock(mutex_);
+  if (is_closed_ || has_unsent() || has_gathered() || !outbox_.empty()) return false;
+  const std::ptrdiff_t sent = platform::send_with_handle(terms_.socket, bytes, handle);
+  if (sent != static_cast<std::ptrdiff_t>(bytes.size())) return false;
+  if (tap_.is_open()) tap_.sent(last.pieces());
+  sent_.add(bytes.size());
+  last_sent_.store(coarse_now(), std::memory_order_relaxed);
+  carrier_ = &carrier;
+  return true;
 }
 
 SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
@@ -175,10 +190,10 @@ SendQueue::Flushed SendQueue::flush() {
   take_gathered();
   if ((outbox_.empty() && carrier_unsent() == 0) || is_closed_) return result;
   const std::size_t before = unsent();
-  result.is_broken =
-      (carrier_ != nullptr && !carrier_->flush()) || outbox_.send(terms_.socket, {}, carrier_) < 0;
-  result.has_rest = !outbox_.empty() || carrier_unsent() != 0;
-  has_unsent_ = result.has_rest;
+  const bool had_rest = has_unsent();
+  send_waiting(result);
+  // A carrier may have told of room before anybody knew that it was wanted.
+  if (result.has_rest && !had_rest && carrier_ != nullptr) send_waiting(result);
   note_waiting();
   settle();
   last_sent_.store(coarse_now(), std::memory_order_relaxed);
@@ -188,6 +203,13 @@ SendQueue::Flushed SendQueue::flush() {
     if (result.may_read_on) answers_wait_ = false;
   }
   return result;
+}
+
+void SendQueue::send_waiting(Flushed& result) {
+  result.is_broken = result.is_broken || (carrier_ != nullptr && !carrier_->flush()) ||
+                     outbox_.send(terms_.socket, {}, carrier_) < 0;
+  result.has_rest = !outbox_.empty() || carrier_unsent() != 0;
+  has_unsent_ = result.has_rest;
 }
 
 bool SendQueue::check_answers() {

@@ -20,6 +20,10 @@
 #include "runtime/cpp/src/channel/synchronization.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
+namespace rr::platform {
+class Descriptor;
+}
+
 namespace rr::channel {
 
 class Carrier;
@@ -77,6 +81,10 @@ class SendQueue {
   void set_carrier(Carrier* carrier);
   /// Null: the plain bytes of the socket.
   [[nodiscard]] Carrier* carrier() const;
+  /// Sends what is the last message to go by the socket, with a handle, and everything after it
+  /// through the carrier. False when something waits already, or the socket does not take it: then
+  /// the connection is to be closed.
+  bool change_over(Writer& last, const platform::Descriptor& handle, Carrier& carrier);
 
   /// Sends what was held back and the message, and queues what the socket does not take. Throws
   /// `how.refusal` when so much waits for other clients that a large message may not.
@@ -146,6 +154,7 @@ class SendQueue {
     return gathered_;
   }
   [[nodiscard]] std::size_t gathered_bytes() const { return gathered().bytes(); }
+  void send_waiting(Flushed& result) RR_REQUIRES(mutex_);
   bool send_under_lock(Writer& message, const How& how, bool& has_rest) RR_REQUIRES(mutex_);
   void queue(Writer& message, std::size_t sent, const How& how, std::optional<std::uint64_t> mark)
       RR_REQUIRES(mutex_);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "runtime/cpp/src/channel/carrier.hpp"
 #include "runtime/cpp/src/channel/connection_tap.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 #include "runtime/cpp/src/platform/sockets.hpp"
 
 namespace rr::channel {
@@ -94,6 +96,37 @@ TEST_F(SendQueueTest, SendsAtOnceWhatTheSocketTakes) {
   EXPECT_TRUE(queue_.is_empty());
   EXPECT_FALSE(queue_.has_unsent());
   EXPECT_EQ(queue_.waiting_bytes(), 0U);
+}
+
+// A socket that takes handles is local; the last message that goes there comes before the rest.
+TEST_F(SendQueueTest, ChangesOverBehindALastMessage) {
+  platform::Descriptor own;
+  platform::Descriptor other;
+  ASSERT_FALSE(platform::make_pair(own, other));
+  SendQueue queue({.socket = own.get(), .limit = 1000}, tap_);
+  Writer writer;
+  put(writer, "last");
+  if (!platform::has_shared_memory()) {
+    EXPECT_FALSE(queue.change_over(writer, other, socket_));
+    return;
+  }
+  EXPECT_TRUE(queue.change_over(writer, other, socket_));
+  EXPECT_EQ(queue.carrier(), &socket_);
+  put(writer, "more");
+  EXPECT_EQ(queue.send(writer, {.now = Time{}}), Sent::taken);
+  EXPECT_EQ(taken(), "more");
+  EXPECT_EQ(queue.traffic().messages_sent, 2U);
+  std::array<std::byte, 100> room;
+  platform::Descriptor handle;
+  EXPECT_EQ(platform::receive_with_handle(other.get(), room, handle), 4);
+  EXPECT_TRUE(handle);
+
+  // Not while something waits.
+  socket_.room = 1;
+  put(writer, "waits");
+  EXPECT_EQ(queue.send(writer, {.now = Time{}}), Sent::first);
+  put(writer, "last");
+  EXPECT_FALSE(queue.change_over(writer, other, socket_));
 }
 
 TEST_F(SendQueueTest, TheFirstThatWaitsSaysSo) {

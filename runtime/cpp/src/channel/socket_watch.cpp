@@ -22,12 +22,20 @@ std::span<const Transition<SocketWatch::State>> SocketWatch::transitions() {
 
 void SocketWatch::become(State state, bool has_unsent) {
   change(state_, state, transitions());
-  std::uint32_t events = 0;
-  if (state == State::full) {
-    events = ready::input | ready::room | ready::closing;
-  } else if (state == State::idle && has_unsent) {
-    events = ready::room;
-  }
+  watch(has_unsent);
+}
+
+// What the reactor is to tell of.
+std::uint32_t SocketWatch::wanted(bool has_unsent) const {
+  if (state_ == State::off) return 0;
+  const bool is_full = state_ == State::full;
+  if (is_bell_) return is_full || has_unsent ? ready::input | ready::closing : ready::closing;
+  if (is_full) return ready::input | ready::room | ready::closing;
+  return has_unsent ? ready::room : 0;
+}
+
+void SocketWatch::watch(bool has_unsent) {
+  const std::uint32_t events = wanted(has_unsent);
   if (events == 0) {
     // Cheaper for the kernel than watching for nothing.
     if (is_registered_) watcher_.remove(socket_);
@@ -41,6 +49,11 @@ void SocketWatch::become(State state, bool has_unsent) {
 
 void SocketWatch::begin(bool is_idle, bool has_unsent) {
   become(is_idle ? State::idle : State::full, has_unsent);
+}
+
+void SocketWatch::use_bell(bool has_unsent) {
+  is_bell_ = true;
+  watch(has_unsent);
 }
 
 void SocketWatch::end() {

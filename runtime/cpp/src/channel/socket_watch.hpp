@@ -39,6 +39,9 @@ class SocketWatch {
   [[nodiscard]] bool is_full() const { return state_ == State::full; }
 
   // `has_unsent`: something waits for room.
+  /// The socket is a bell, for input and for room: it has input then. Its end is watched for
+  /// always, since whoever reads may sleep where it does not show.
+  void use_bell(bool has_unsent);
   /// The connection begins. A client's is idle: its first call follows at once and reads by itself.
   void begin(bool is_idle, bool has_unsent);
   void end();
@@ -77,6 +80,8 @@ class SocketWatch {
 
  private:
   void become(State state, bool has_unsent);
+  void watch(bool has_unsent);
+  [[nodiscard]] std::uint32_t wanted(bool has_unsent) const;
   bool must_look(std::uint32_t uses);
 
   // Milliseconds; small, as there is one for each connection.
@@ -92,6 +97,7 @@ class SocketWatch {
   bool is_registered_ = false;  // with the watcher, for anything
   bool is_looked_at_ = false;   // look() will be called
   bool is_pinned_ = false;
+  bool is_bell_ = false;
   std::uint32_t seen_uses_ = 0;
   Time last_call_{};
 };

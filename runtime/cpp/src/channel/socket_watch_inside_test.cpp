@@ -50,6 +50,30 @@ class SocketWatchTest : public ::testing::Test {
   SocketWatch watch_{watcher_, 7, pollable_};
 };
 
+// Room is told of as input, and the end while nobody polls for input.
+TEST_F(SocketWatchTest, ABellIsWatchedForItsEndAlways) {
+  constexpr std::uint32_t bell = ready::input | ready::closing;
+  watch_.use_bell(false);
+  EXPECT_EQ(watcher_.events, std::nullopt);
+  watch_.begin(true, false);
+  EXPECT_EQ(watcher_.events, std::uint32_t{ready::closing});
+  watch_.update(true);
+  EXPECT_EQ(watcher_.events, bell);
+  watch_.go_full(false);
+  EXPECT_EQ(watcher_.events, bell);
+  watch_.go_idle(false);
+  EXPECT_EQ(watcher_.events, std::uint32_t{ready::closing});
+  watch_.end();
+  EXPECT_EQ(watcher_.events, std::nullopt);
+}
+
+TEST_F(SocketWatchTest, ASocketBecomesABell) {
+  watch_.begin(false, false);
+  EXPECT_EQ(watcher_.events, all);
+  watch_.use_bell(false);
+  EXPECT_EQ(watcher_.events, ready::input | ready::closing);
+}
+
 TEST_F(SocketWatchTest, AServersIsWatchedFromTheBeginningToTheEnd) {
   watch_.go_full(false);  // not begun
   EXPECT_EQ(watcher_.events, std::nullopt);

@@ -92,7 +92,11 @@ void StreamConnection::wait_until_handled(const Waiter& waiter, Time deadline) {
 // A blocking receive would be late for a deadline that is near: then bytes are waited for first.
 bool StreamConnection::may_block_until(Time deadline) {
   if (deadline == never || deadline - Clock::now() > receive_pause) return true;
-  platform::wait_for(socket_.get(), ready::input, deadline);
+  if (SharedCarrier* const shared = layers_.shared()) {
+    shared->wait(deadline);
+  } else {
+    platform::wait_for(socket_.get(), ready::input, deadline);
+  }
   return false;
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a connection receives through a carrier.
+#include <system_error>
 #include <utility>
 
 #include "rr/printable.hpp"
 #include "runtime/cpp/src/channel/logging.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/stream_sizes.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
 
 namespace rr::channel {
@@ -14,6 +16,8 @@ StreamConnection::Received StreamConnection::receive_carried(Scratch& scratch, b
   const Received received = receive_bytes(scratch, may_block, is_full);
   // Words of its own: of a handshake, answers to pings.
   if (layers_.carrier()->unsent() != 0) flush();
+  SharedCarrier* const shared = layers_.shared();
+  if (shared != nullptr && shared->has_taken_bells() && sending_.has_unsent()) flush();
   return received;
 }
 
@@ -87,6 +91,47 @@ StreamConnection::Received StreamConnection::upgrade(Scratch& scratch, std::size
 void StreamConnection::note_peer() {
   auto proof = layers_.take_proof();
   if (proof && terms_.tls) terms_.tls->watch(shared_from_this(), std::move(proof));
+}
+
+// Shared memory
+
+// What a client may ask for: once, and before it has a session.
+bool StreamConnection::may_share() const {
+  return terms_.shares_memory && role_ == Role::server && layers_.carrier() == nullptr &&
+         !is_authorised_.load(std::memory_order_relaxed);
+}
+
+// Null when there is no memory for it, or the client's account has no room.
+std::unique_ptr<SharedCarrier> StreamConnection::make_shared_carrier(Descriptor& handle) {
+  Charge charge(account_);
+  if (!charge.add(SharedRings::memory_size(shared_ring_size))) return nullptr;
+  std::error_code error;
+  SharedRings rings = SharedRings::make(shared_ring_size, handle, error);
+  if (!rings) return nullptr;
+  return std::make_unique<SharedCarrier>(std::move(rings), true, socket_.get(), options_->spin,
+                                         std::move(charge));
+}
+
+// The answer is the last message that goes by the socket. With the read lease.
+void StreamConnection::share_memory(Writer& answer, const Descriptor& handle,
+                                    std::unique_ptr<SharedCarrier> carrier) {
+  if (!sending_.change_over(answer, handle, *carrier)) {
+    close({ErrorCode::protocol_error, "the other side does not take the memory it has asked for"});
+    return;
+  }
+  layers_.share(std::move(carrier));
+  const MutexLock lock(mutex_);
+  watch_.use_bell(sending_.has_unsent());
+}
+
+// Bytes that came together with the request did not come through the memory.
+StreamConnection::Received StreamConnection::begin_sharing() {
+  layers_.forget_sharing();
+  if (inbox_.is_assembling() || !inbox_.kept().empty() || layers_.has_bytes_behind()) {
+    return fail_reading(
+        {ErrorCode::protocol_error, "the other side speaks before it shares memory"});
+  }
+  return Received::some;
 }
 
 // What follows on the connection is TLS. Bytes that came together with the request in clear are not

@@ -104,6 +104,7 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
     }
     reactor_->connections().begin();
     self_ = shared_from_this();
+    if (layers_.shared() != nullptr) watch_.use_bell(false);
     watch_.begin(role_ == Role::client, sending_.has_unsent());
   }
   constexpr Milliseconds first_look{400};  // 04, section 5
@@ -184,6 +185,10 @@ void StreamConnection::begin_close(const Error& why) {
   sending_.close();
   why_closed_ = std::make_unique<const Error>(why);
   platform::shut_down(socket_.get());  // wakes a thread that receives
+  if (SharedCarrier* const shared = layers_.shared()) {
+    shared->interrupt();
+    shared->interrupt_other();
+  }
 }
 
 // With the read lease, which is not given back.

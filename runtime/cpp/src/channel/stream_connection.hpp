@@ -145,6 +145,7 @@ class StreamConnection final : public Connection,
   void send_own(Writer& message);  // of the connection itself; failures are ignored
 
   // Reading (stream_reading.cpp)
+  void note_bell(SharedCarrier& shared, bool is_end);
   Received receive(Scratch& scratch, bool may_block, bool& is_full);
   Received receive_once(Scratch& scratch, bool may_block, bool& is_full);
   Received take_bytes(Scratch& scratch, std::size_t received);
@@ -171,6 +172,11 @@ class StreamConnection final : public Connection,
   Received receive_bytes(Scratch& scratch, bool may_block, bool& is_full);
   Received upgrade(Scratch& scratch, std::size_t size, std::unique_ptr<Layer> layer);
   Received begin_tls();
+  [[nodiscard]] bool may_share() const;
+  std::unique_ptr<SharedCarrier> make_shared_carrier(Descriptor& handle);
+  void share_memory(Writer& answer, const Descriptor& handle,
+                    std::unique_ptr<SharedCarrier> carrier);
+  Received begin_sharing();
   void note_peer();
 
   // Handing on messages (stream_dispatch.cpp)
@@ -224,6 +230,8 @@ class StreamConnection final : public Connection,
 
   // When the reactor watches, and threads of it that are pinned here (stream_watching.cpp)
   void watch_input() RR_REQUIRES(mutex_);
+  [[nodiscard]] bool has_unread() RR_REQUIRES(mutex_);
+  void ring_or_read() RR_REQUIRES(mutex_);
   void end_call() RR_REQUIRES(mutex_);
   void schedule_watch_timer() RR_REQUIRES(mutex_);
   void look_at_watch();

@@ -51,8 +51,10 @@ bool has_only_answers(const Message& message, const Entry& first) {
 
 void StreamConnection::on_ready(std::uint32_t events) {
   const auto self = shared_from_this();  // the reactor's reference may go meanwhile
-  if ((events & ready::room) != 0 && sending_.has_unsent()) flush();
   const bool until_end = (events & ready::end) != 0;
+  SharedCarrier* const shared = layers_.shared();
+  if (shared != nullptr) note_bell(*shared, until_end);
+  if ((events & ready::room) != 0 && sending_.has_unsent()) flush();
   if ((events & (ready::input | ready::end)) == 0) return;
   // Clients that keep the thread long are often ready at once: between two of them it is polled, so
   // that others wait for one of them and not for all.
@@ -62,6 +64,13 @@ void StreamConnection::on_ready(std::uint32_t events) {
   } else if (take_read_lease(until_end)) {
     read_as_reactor(until_end);
   }
+}
+
+// The bell rings for what can be read, and for room; the end is told to whoever sleeps elsewhere.
+void StreamConnection::note_bell(SharedCarrier& shared, bool is_end) {
+  shared.note_event(is_end);
+  if (is_end) shared.interrupt();
+  if (sending_.has_unsent()) flush();
 }
 
 void StreamConnection::read_soon(bool until_end) {
@@ -208,6 +217,7 @@ StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
   });
   if (account_ != nullptr) note_assembly();
   if (layers_.begins_tls()) return begin_tls();
+  if (layers_.begins_sharing()) return begin_sharing();
   if (fits && is_right) return Received::some;
   if (!had_message_) {
     try {
@@ -224,11 +234,21 @@ StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
 // What a message for the connection itself asks for.
 void StreamConnection::answer_own(const Message& message, const Entry& entry,
                                   std::span<const std::byte> bytes) {
-  const OwnSide side{*options_, terms_, layers_, remote_node_, version(), role_ == Role::server};
+  const OwnSide side{*options_,  terms_, layers_, remote_node_, version(), role_ == Role::server,
+                     may_share()};
   Writer& writer = thread_writer();
-  const OwnAnswer answer = OwnRequests(side, writer).answer(message, entry);
+  OwnRequests own(side, writer);
+  const OwnAnswer answer = own.answer(message, entry);
   if (answer.agreement) {
     set_agreement(layers_.sender_of(message), std::string(message.sender_name), *answer.agreement);
+  }
+  if (answer.shares_memory) {
+    Descriptor handle;
+    if (auto carrier = make_shared_carrier(handle)) {
+      share_memory(writer, handle, std::move(carrier));
+      return;
+    }
+    own.refuse(message, entry, "there is no memory to share");
   }
   if (answer.is_answer) send_own(writer);
   if (answer.begins_tls) layers_.ask_for_tls(answer.is_mutual, bytes);
@@ -267,7 +287,7 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
     had_message_ = true;
     keep_alive_.set_heard(true);
   }
-  if (layers_.begins_tls()) {
+  if (layers_.begins_tls() || layers_.begins_sharing()) {
     layers_.note_bytes_behind();
     return false;
   }
@@ -326,6 +346,8 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
     } else {
       is_again = !is_paused() && lease_.is_asked_again();
       if (!watch_.is_pinned()) watch_input();
+      // What runs now may take long, and nobody looks into a ring meanwhile.
+      if (has_strand || !scratch.deferred.empty()) ring_or_read();
     }
   }
   if (next != nullptr) platform::wake(next);

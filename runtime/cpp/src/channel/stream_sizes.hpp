@@ -11,6 +11,8 @@ inline constexpr std::size_t stream_chunk = std::size_t{64} * 1024;
 /// the message is complete; and less while others receive data.
 inline constexpr std::size_t largest_receive = std::size_t{128} * 1024;
 inline constexpr std::size_t largest_receive_beside_others = std::size_t{32} * 1024;
+/// Bytes of a ring in shared memory, of which a connection has two.
+inline constexpr std::size_t shared_ring_size = std::size_t{256} * 1024;
 /// What a message that waits costs besides its bytes.
 inline constexpr std::size_t bytes_beside_frame = 128;
 

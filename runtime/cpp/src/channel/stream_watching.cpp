@@ -17,6 +17,19 @@ void StreamConnection::watch_input() {
   if (!is_closing_) watch_.go_full(sending_.has_unsent());
 }
 
+// With the lease free. Whether something has come through shared memory that nobody has read; if
+// not the bell rings for what comes from now on.
+bool StreamConnection::has_unread() {
+  SharedCarrier* const shared = layers_.shared();
+  return shared != nullptr && !is_closing_ && watch_.is_full() && shared->rest();
+}
+
+// Where nobody reads, and input is watched for from now on: a socket tells of input that is there,
+// a ring does not.
+void StreamConnection::ring_or_read() {
+  if (has_unread()) read_soon(false);
+}
+
 // A caller has ended reading, and nobody goes on.
 [[gnu::hot]] void StreamConnection::end_call() {
   const bool has_more = lease_.is_asked_again();
@@ -24,6 +37,7 @@ void StreamConnection::watch_input() {
   if (watch_.end_call(last_received, lease_.uses(), has_more, sending_.has_unsent())) {
     schedule_watch_timer();
   }
+  ring_or_read();
 }
 
 [[gnu::hot]] void StreamConnection::schedule_watch_timer() {
@@ -32,7 +46,9 @@ void StreamConnection::watch_input() {
 
 void StreamConnection::expect() {
   const MutexLock lock(mutex_);
-  if (!lease_.is_taken()) watch_input();
+  if (lease_.is_taken()) return;
+  watch_input();
+  ring_or_read();
 }
 
 void StreamConnection::nudge() { send_test(); }
@@ -45,6 +61,7 @@ void StreamConnection::look_at_watch() {
     if (is_closing_) return;
     look = watch_.look(lease_.uses(), lease_.is_taken(), sending_.has_unsent());
     if (look == SocketWatch::Look::later) schedule_watch_timer();
+    if (look != SocketWatch::Look::later && !lease_.is_taken()) ring_or_read();
   }
   if (look == SocketWatch::Look::stuck) on_stuck();
 }
@@ -107,7 +124,10 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
     return true;
   }
   watch_.unpin();
-  if (!lease_.is_taken()) watch_input();
+  if (!lease_.is_taken()) {
+    watch_input();
+    ring_or_read();
+  }
   return false;
 }
 

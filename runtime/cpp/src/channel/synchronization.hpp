@@ -7,6 +7,7 @@
 
 #include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 #include "runtime/cpp/src/platform/sleep_word.hpp"
 
 namespace rr::channel {
@@ -28,6 +29,10 @@ struct Synchronization {
     return platform::sleep_on(word, seen, deadline);
   }
   static void wake(const SleepWord* word) { platform::wake(word); }
+  /// The same on a word that two processes share, for `time` at most.
+  static void sleep_on_shared(const SleepWord& word, std::uint32_t seen, Clock::duration time) {
+    platform::sleep_on_shared(word, seen, time);
+  }
   static void wait_until(Condition& condition, Mutex& mutex, Time deadline) RR_REQUIRES(mutex) {
     channel::wait_until(condition, mutex, deadline);
   }

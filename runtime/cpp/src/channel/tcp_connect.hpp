@@ -20,9 +20,11 @@ enum class OpeningStep : std::uint8_t {
   web_socket,  ///< the handshake of web sockets
   start_tls,   ///< TLS as the protocol has it
   agree,       ///< what every connection begins with
+  ask_memory,  ///< whether the other side shares memory, which ends it when it does not
+  get_memory,  ///< that it makes
 };
 
-/// Those that the scheme of a URL asks for.
+/// Those that the scheme of a URL asks for, without those that an option asks for.
 std::vector<OpeningStep> opening_steps(std::string_view scheme);
 
 /// Tries addresses, a new one every few milliseconds; the first with which all steps succeed wins.

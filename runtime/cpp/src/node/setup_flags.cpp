@@ -87,6 +87,12 @@ std::optional<bool> truth_of(const std::string& value) {
   return std::nullopt;
 }
 
+bool take_shared_memory(SetupOptions& options, const std::string& value) {
+  const auto truth = truth_of(value);
+  if (truth) options.node.local.shared_memory = *truth;
+  return truth.has_value();
+}
+
 bool take_system_trust(SetupOptions& options, const std::string& value) {
   const auto truth = truth_of(value);
   if (truth) options.node.tls.trust_system_authorities = truth;
@@ -108,6 +114,7 @@ const std::array flags = {
     Flag{"local-start-server", &O::local_start_server},
     Flag{"local-start-client", &O::local_start_client},
     Flag{"local-server-public", &O::local_server_public},
+    Flag{"local-shared-memory", &take_shared_memory},
     Flag{"tcp-start-server", &O::tcp_start_server},
     Flag{"tcp-listen-localhost", &O::tcp_listen_localhost},
     Flag{"tcp-start-server-sharer", &O::tcp_start_server_sharer},

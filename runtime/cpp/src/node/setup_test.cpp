@@ -127,6 +127,7 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
                                    "local-start-server",
                                    "local-start-client",
                                    "local-server-public",
+                                   "local-shared-memory",
                                    "tcp-start-server",
                                    "tcp-listen-localhost",
                                    "tcp-start-server-sharer",

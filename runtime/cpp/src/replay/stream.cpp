@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/replay/stream.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/platform/local_socket.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
 #include "runtime/cpp/src/platform/waiting.hpp"
 
 namespace rr::replay {
@@ -111,6 +113,14 @@ void Stream::send_through(std::size_t count, Bytes bytes) {
 
 void Stream::write(std::span<const std::byte> bytes) {
   while (is_open() && !bytes.empty()) {
+    if (shared_) {
+      const platform::Buffer piece{bytes.data(), bytes.size()};
+      const std::ptrdiff_t sent = shared_->send({&piece, 1});
+      if (sent < 0) return;
+      bytes = bytes.subspan(static_cast<std::size_t>(sent));
+      if (!bytes.empty()) shared_->wait_for_room(Clock::now() + longest_connecting);
+      continue;
+    }
     const std::ptrdiff_t sent = platform::send(socket_.get(), bytes);
     if (sent == platform::broken) return;
     if (sent == platform::nothing_now) {
@@ -135,10 +145,23 @@ bool Stream::take_message(Bytes& message) {
 
 Arrival Stream::receive(Bytes& message, Milliseconds limit) {
   const auto end = Clock::now() + limit;
+  while (true) {
+    const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now());
+    const Arrival arrival = receive_unfiltered(message, std::max(left, Milliseconds(0)));
+    if (arrival != Arrival::message || !filter_) return arrival;
+    const auto filter = std::exchange(filter_, nullptr);  // may receive itself
+    const bool is_done = filter(*this, message);
+    if (!filter_) filter_ = filter;
+    if (!is_done) return arrival;
+  }
+}
+
+Arrival Stream::receive_unfiltered(Bytes& message, Milliseconds limit) {
+  const auto end = Clock::now() + limit;
   while (!take_message(message)) {
     if (!is_open()) return Arrival::closed;
     const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now());
-    if (!has_ended_ && !wait_readable(socket_.get(), left)) return Arrival::nothing;
+    if (!has_ended_ && !wait_for_bytes(left)) return Arrival::nothing;
     if (has_ended_ || !read()) {
       close();
       return Arrival::closed;
@@ -147,10 +170,28 @@ Arrival Stream::receive(Bytes& message, Milliseconds limit) {
   return Arrival::message;
 }
 
+// The bell may have rung before.
+bool Stream::wait_for_bytes(Milliseconds limit) {
+  if (shared_ && shared_->rest()) return true;
+  return wait_readable(socket_.get(), limit);
+}
+
+// In shared memory there may be nothing, though the bell has rung.
+std::ptrdiff_t Stream::receive_some(std::span<std::byte> room) {
+  if (shared_) {
+    shared_->note_event();
+    return shared_->receive(room, false);
+  }
+  const std::ptrdiff_t size = platform::receive_with_handle(socket_.get(), room, handle_);
+  if (size != platform::nothing_now) return size;
+  return platform::receive(socket_.get(), room, platform::Wait::some);
+}
+
 bool Stream::read() {
   std::byte buffer[65536];
   while (true) {
-    const std::ptrdiff_t count = platform::receive(socket_.get(), buffer, platform::Wait::some);
+    const std::ptrdiff_t count = receive_some(buffer);
+    if (count == platform::nothing_now && shared_) return true;
     if (count == platform::nothing_now) continue;
     if (count <= 0) {
       close();

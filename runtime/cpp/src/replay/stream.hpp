@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,8 @@
 #include <vector>
 
 #include "runtime/cpp/src/channel/layer.hpp"
+#include "runtime/cpp/src/channel/shared_carrier.hpp"
+#include "runtime/cpp/src/platform/sockets.hpp"
 
 /// Sockets that carry messages, and what may lie around these; nothing here knows what they say.
 namespace rr::replay {
@@ -57,6 +60,16 @@ class Stream {
   /// waits until both sides have agreed; throws std::runtime_error when they do not.
   void put(std::unique_ptr<channel::Layer> layer, Milliseconds limit);
 
+  /// Bytes go through the carrier from now on, whose bell is the socket.
+  void share(std::unique_ptr<channel::SharedCarrier> carrier) { shared_ = std::move(carrier); }
+  /// Called with each message that has come: true when it has done what is to be done, so that
+  /// nobody else gets the message. It may send and receive.
+  void set_filter(std::function<bool(Stream&, const Bytes&)> filter) {
+    filter_ = std::move(filter);
+  }
+  /// What has come with bytes since the last call, as platform::receive_with_handle() has it.
+  platform::Descriptor take_handle() { return std::move(handle_); }
+
   /// Does nothing on a closed connection: what the peer did is found by receive().
   void send(std::span<const std::byte> bytes);
   /// Waits for a whole message. Bytes that belong to none are skipped until the connection ends.
@@ -73,8 +86,14 @@ class Stream {
   // What the system has, or what is there already, through the layers from this one on.
   bool read();
   void take(Bytes bytes, std::size_t first_layer);
+  Arrival receive_unfiltered(Bytes& message, Milliseconds limit);
+  bool wait_for_bytes(Milliseconds limit);
+  std::ptrdiff_t receive_some(std::span<std::byte> room);
 
   Descriptor socket_;
+  std::unique_ptr<channel::SharedCarrier> shared_;
+  platform::Descriptor handle_;
+  std::function<bool(Stream&, const Bytes&)> filter_;
   std::vector<std::unique_ptr<channel::Layer>> layers_;
   std::string failure_;     // of a layer
   bool has_ended_ = false;  // as a layer says

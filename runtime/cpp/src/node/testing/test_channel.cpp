@@ -61,16 +61,20 @@ std::string test_folder() {
 }
 
 NodeOptions with_channel(NodeOptions options, const std::string& channel) {
-  if (channel == "local") options.local.user_run_dir = test_folder() + "/run";
+  if (channel == "local" || channel == "shm") {
+    options.local.user_run_dir = test_folder() + "/run";
+    options.local.shared_memory = channel == "shm";
+  }
   if (channel == "tls" || channel == "wss") add_certificate(options);
   return options;
 }
 
 std::string listen_by_channel(Node& node, std::uint16_t& port, const std::string& channel) {
   const std::string who = "nodeid=" + node.id().text() + "&";
-  if (channel == "local" || channel == "intra") {
-    node.listen("rr+" + channel + "://");
-    return "rr+" + channel + ":///?" + who;
+  if (channel == "local" || channel == "shm" || channel == "intra") {
+    const std::string scheme = channel == "shm" ? "rr+local" : "rr+" + channel;
+    node.listen(scheme + "://");
+    return scheme + ":///?" + who;
   }
   port = node.listen_tcp(0, "127.0.0.1");
   const std::string place = "://127.0.0.1:" + std::to_string(port) + "/?";

@@ -9,7 +9,7 @@
 namespace rr::testing {
 
 /// The channel that pairs of nodes use in a run of the tests: that of the variable
-/// ROBDEF_TEST_CHANNEL, one of tcp, local, intra, ws, tls, wss, and tcp without it.
+/// ROBDEF_TEST_CHANNEL, one of tcp, local, shm, intra, ws, tls, wss, and tcp without it.
 std::string test_channel();
 
 /// A folder of this process, made on demand and removed at its end.

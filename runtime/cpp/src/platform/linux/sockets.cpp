@@ -28,9 +28,6 @@ bool set(int socket, int level, int name, const Value& value) {
   return setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-// What a call that has returned less than 0 means.
-std::ptrdiff_t failure() { return errno == EAGAIN || errno == EWOULDBLOCK ? nothing_now : broken; }
-
 // `ask` is getsockname or getpeername.
 Address address_of(int socket, int (*ask)(int, sockaddr*, socklen_t*)) {
   Address address;
@@ -55,7 +52,7 @@ void close_socket(int socket) { ::close(socket); }
   while (true) {
     const ssize_t size = ::recv(socket, room.data(), room.size(), flags);
     if (size >= 0) return size;
-    if (errno != EINTR) return failure();
+    if (errno != EINTR) return failed_transfer();
     if (wait != Wait::none) return nothing_now;
   }
 }
@@ -64,7 +61,7 @@ void close_socket(int socket) { ::close(socket); }
   while (true) {
     const ssize_t size = ::send(socket, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (size >= 0) return size;
-    if (errno != EINTR) return failure();
+    if (errno != EINTR) return failed_transfer();
   }
 }
 
@@ -75,7 +72,7 @@ std::ptrdiff_t send_gathered(int socket, std::span<const Buffer> buffers) {
   while (true) {
     const ssize_t size = ::sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (size >= 0) return size;
-    if (errno != EINTR) return failure();
+    if (errno != EINTR) return failed_transfer();
   }
 }
 

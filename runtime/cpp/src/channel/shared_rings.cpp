@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/shared_rings.hpp"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <new>
+#include <utility>
+
+namespace rr::channel {
+namespace {
+
+using Words = SharedRing::Words;
+
+// What is at the beginning, written once, before anybody else has the memory.
+struct Header {
+  std::array<char, 8> magic;
+  std::uint32_t version;
+  std::uint32_t kind;
+  std::uint32_t ring_size;
+  std::uint32_t data_at;
+};
+static_assert(sizeof(Header) == 24 && std::is_trivially_copyable_v<Header>);
+
+constexpr std::array<char, 8> magic = {'R', 'R', 'S', 'H', 'A', 'R', 'E', 'D'};
+constexpr std::uint32_t version = 1;
+constexpr std::uint32_t kind_of_rings = 1;
+constexpr std::size_t to_server_at = 0x100;
+constexpr std::size_t to_client_at = 0x200;
+constexpr std::size_t data_at = 0x1000;
+static_assert(to_server_at + sizeof(Words) == to_client_at &&
+              to_client_at + sizeof(Words) <= data_at);
+
+SharedRing ring_at(const platform::SharedMemory& memory, std::size_t words_at, std::size_t place,
+                   std::size_t size) {
+  std::byte* const bytes = memory.bytes();
+  return {std::launder(reinterpret_cast<Words*>(bytes + words_at)), bytes + data_at + place * size,
+          size};
+}
+
+bool is_ring_size(std::size_t size) {
+  return std::has_single_bit(size) && size >= SharedRings::smallest_ring &&
+         size <= SharedRings::largest_ring;
+}
+
+}  // namespace
+
+std::size_t SharedRings::memory_size(std::size_t ring_size) { return data_at + 2 * ring_size; }
+
+SharedRings::SharedRings(platform::SharedMemory memory, std::size_t ring_size)
+    : memory_(std::move(memory)),
+      to_server_(ring_at(memory_, to_server_at, 0, ring_size)),
+      to_client_(ring_at(memory_, to_client_at, 1, ring_size)) {}
+
+SharedRings SharedRings::make(std::size_t ring_size, platform::Descriptor& handle,
+                              std::error_code& error) {
+  if (!is_ring_size(ring_size)) {
+    error = std::make_error_code(std::errc::invalid_argument);
+    return {};
+  }
+  platform::SharedMemory memory =
+      platform::make_shared_memory(memory_size(ring_size), handle, error);
+  if (!memory) return {};
+  const Header header{magic, version, kind_of_rings, static_cast<std::uint32_t>(ring_size),
+                      static_cast<std::uint32_t>(data_at)};
+  std::memcpy(memory.bytes(), &header, sizeof header);
+  new (memory.bytes() + to_server_at) Words;
+  new (memory.bytes() + to_client_at) Words;
+  SharedRings rings(std::move(memory), ring_size);
+  // The server's reactor watches the bell before the client has the memory.
+  rings.to_server_.words->reader.store(RingReader::Steps::watches);
+  return rings;
+}
+
+SharedRings SharedRings::open(const platform::Descriptor& handle, std::error_code& error) {
+  platform::SharedMemory memory =
+      platform::map_shared_memory(handle, memory_size(largest_ring), error);
+  if (!memory) return {};
+  Header header{};
+  if (memory.size() >= data_at) std::memcpy(&header, memory.bytes(), sizeof header);
+  const bool is_right = header.magic == magic && header.version == version &&
+                        header.kind == kind_of_rings && header.data_at == data_at &&
+                        is_ring_size(header.ring_size) &&
+                        memory.size() == memory_size(header.ring_size);
+  if (!is_right) {
+    error = std::make_error_code(std::errc::invalid_argument);
+    return {};
+  }
+  return {std::move(memory), header.ring_size};
+}
+
+}  // namespace rr::channel

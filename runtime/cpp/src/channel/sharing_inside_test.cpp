@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a server's connection goes over to shared memory, and clients that do it otherwise than the
+// page says.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/channel/handshake.hpp"
+#include "runtime/cpp/src/channel/operations.hpp"
+#include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/stream_sizes.hpp"
+#include "runtime/cpp/src/channel/testing/accepting.hpp"
+#include "runtime/cpp/src/channel/testing/socket_pair.hpp"
+#include "runtime/cpp/src/platform/shared_memory.hpp"
+
+namespace rr::channel {
+namespace {
+
+using std::chrono_literals::operator""us;
+using rr::testing::comes_true;
+using rr::testing::SocketPair;
+using rr::testing::TestReceiver;
+
+constexpr int patience = 20'000;  // milliseconds
+const std::string place = "the test";
+
+// A server's connection, and the client's end of its socket.
+struct Sharing {
+  Sharing() { reactor_->start(); }
+  Sharing(const Sharing&) = delete;
+  Sharing& operator=(const Sharing&) = delete;
+  ~Sharing() {
+    if (server_) server_->close(Error(ErrorCode::connection_error, "the test is over"));
+    reactor_->connections().wait_for_none();
+    reactor_->stop();
+  }
+
+  // `limit`: bytes that the client may make it hold.
+  void accept(bool shares = true, std::size_t limit = 10'000'000) {
+    LinkTerms terms = tcp_terms(*options_, "rr+local");
+    terms.shares_memory = shares;
+    server_ = std::make_shared<StreamConnection>(StreamConnection::Role::server,
+                                                 Descriptor(sockets_.give_away()), reactor_,
+                                                 options_, std::move(terms), nullptr);
+    account_ = std::make_shared<Account>(std::make_shared<Pool>(limit, 0), limit);
+    server_->set_account(account_);
+    receiver_ = std::make_shared<TestReceiver>(
+        server_, [](Connection& connection, const Entry& /*first*/, const MemoryRef& /*owner*/) {
+          Writer writer;
+          writer.reset(MessageVersion::v2);
+          writer.entry({.type = EntryType::property_get_res, .request_id = 9}, 0, 0);
+          writer.message({}, 1);
+          connection.reply(writer, Priority::usual);
+        });
+    server_->start(receiver_);
+  }
+
+  [[nodiscard]] std::vector<std::byte> request() const {
+    return share_memory_request(agreed_, *options_);
+  }
+  std::uint32_t level() {
+    sockets_.send(capability_request(shared_memory_capability, agreed_, *options_));
+    return check_capability(sockets_.receive_message(patience), shared_memory_capability, agreed_,
+                            *options_, place);
+  }
+  // Asks for memory. Whether the answer says that there is some.
+  bool ask() {
+    sockets_.send(request());
+    return receive_answer();
+  }
+  bool receive_answer() {
+    std::array<std::byte, 1000> room;
+    std::ptrdiff_t size = platform::nothing_now;
+    comes_true([&] {
+      size = platform::receive_with_handle(sockets_.own(), room, handle_);
+      return size != platform::nothing_now;
+    });
+    if (size <= 0) return false;
+    return check_share_memory(std::span(room).first(static_cast<std::size_t>(size)), agreed_,
+                              *options_, place);
+  }
+  // The client's side.
+  std::unique_ptr<SharedCarrier> open() {
+    std::error_code error;
+    return std::make_unique<SharedCarrier>(SharedRings::open(handle_, error), false, sockets_.own(),
+                                           0us);
+  }
+  bool is_ended() {
+    return comes_true([&] { return receiver_->is_closed.load(); });
+  }
+
+  const std::shared_ptr<Reactor> reactor_ = std::make_shared<Reactor>(4);
+  const std::shared_ptr<const NodeOptions> options_ =
+      std::make_shared<const NodeOptions>(NodeOptions{.id = NodeId::random()});
+  SocketPair sockets_;
+  Agreed agreed_;
+  std::shared_ptr<Account> account_;
+  std::shared_ptr<StreamConnection> server_;
+  std::shared_ptr<TestReceiver> receiver_;
+  platform::Descriptor handle_;
+};
+
+class SharingTest : public ::testing::Test, public Sharing {
+ protected:
+  void SetUp() override {
+    if (!platform::has_shared_memory()) GTEST_SKIP() << "this system has no shared memory";
+  }
+};
+
+TEST_F(SharingTest, MessagesGoThroughTheMemoryFromTheAnswerOn) {
+  accept();
+  EXPECT_EQ(level(), shared_memory_level);
+  ASSERT_TRUE(ask());
+  EXPECT_EQ(account_->held(), SharedRings::memory_size(shared_ring_size));
+  const auto client = open();
+  const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req, 1000);
+  const platform::Buffer piece{asked.data(), asked.size()};
+  for (unsigned count = 1; count <= 100; ++count) {
+    ASSERT_EQ(client->send({&piece, 1}), static_cast<std::ptrdiff_t>(asked.size()));
+    std::array<std::byte, 1000> room;
+    std::ptrdiff_t size = platform::nothing_now;
+    while (size == platform::nothing_now) size = client->receive(room, true);
+    Message message;
+    Entry entry;
+    ASSERT_GT(size, 0);
+    ASSERT_TRUE(read_message(std::span(room).first(static_cast<std::size_t>(size)), {}, false,
+                             message, entry));
+    EXPECT_EQ(entry.request_id, 9U);
+    EXPECT_TRUE(comes_true([&] { return receiver_->handled == count; }));
+  }
+}
+
+TEST_F(SharingTest, IsNotOfferedWhereItIsNotWanted) {
+  accept(false);
+  EXPECT_EQ(level(), 0U);
+  EXPECT_FALSE(ask());
+  EXPECT_FALSE(handle_);
+  EXPECT_EQ(level(), 0U) << "the connection goes on as it was";
+}
+
+TEST_F(SharingTest, IsNotOfferedToAClientOfASession) {
+  accept();
+  server_->set_authorised(true);
+  EXPECT_EQ(level(), 0U);
+  EXPECT_FALSE(ask());
+  EXPECT_FALSE(handle_);
+}
+
+TEST_F(SharingTest, IsRefusedWhereTheAccountHasNoRoom) {
+  accept(true, 100'000);
+  EXPECT_EQ(level(), shared_memory_level);
+  EXPECT_FALSE(ask());
+  EXPECT_FALSE(handle_);
+  EXPECT_EQ(account_->held(), 0U);
+  EXPECT_EQ(level(), shared_memory_level) << "the connection goes on as it was";
+}
+
+TEST_F(SharingTest, HappensOnce) {
+  accept();
+  ASSERT_TRUE(ask());
+  const auto client = open();
+  const std::vector<std::byte> again = request();
+  const platform::Buffer piece{again.data(), again.size()};
+  client->send({&piece, 1});
+  std::array<std::byte, 1000> room;
+  std::ptrdiff_t size = platform::nothing_now;
+  while (size == platform::nothing_now) size = client->receive(room, true);
+  ASSERT_GT(size, 0);
+  EXPECT_FALSE(check_share_memory(std::span(room).first(static_cast<std::size_t>(size)), agreed_,
+                                  *options_, place));
+}
+
+TEST_F(SharingTest, NothingMayFollowTheRequest) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{12}, std::size_t{1000}}) {
+    SCOPED_TRACE(size);
+    Sharing other;
+    other.accept();
+    std::vector<std::byte> both = other.request();
+    const std::vector<std::byte> more = rr::testing::message_of(EntryType::connection_test, 500);
+    both.insert(both.end(), more.begin(),
+                more.begin() + static_cast<std::ptrdiff_t>(std::min(size, more.size())));
+    other.sockets_.send(both);
+    EXPECT_TRUE(other.is_ended());
+  }
+}
+
+TEST_F(SharingTest, BytesOfTheSocketAreNoMessagesAfterwards) {
+  accept();
+  ASSERT_TRUE(ask());
+  const auto client = open();
+  sockets_.send(rr::testing::message_of(EntryType::property_get_req, 10'000));
+  const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req);
+  const platform::Buffer piece{asked.data(), asked.size()};
+  client->send({&piece, 1});
+  EXPECT_TRUE(comes_true([&] { return receiver_->handled == 1; }));
+  EXPECT_FALSE(receiver_->is_closed);
+}
+
+TEST_F(SharingTest, TheEndOfTheSocketIsTheEnd) {
+  accept();
+  ASSERT_TRUE(ask());
+  platform::shut_down(sockets_.own());
+  EXPECT_TRUE(is_ended());
+}
+
+TEST_F(SharingTest, AWrongIndexIsTheEnd) {
+  accept();
+  ASSERT_TRUE(ask());
+  std::error_code error;
+  const SharedRings rings = SharedRings::open(handle_, error);
+  ASSERT_TRUE(rings);
+  rings.to_server().words->written = shared_ring_size + 1;
+  constexpr std::array<std::byte, 1> bell{};
+  sockets_.send(bell);
+  EXPECT_TRUE(is_ended());
+  EXPECT_EQ(receiver_->handled, 0U);
+}
+
+TEST_F(SharingTest, WhatIsNoMessageIsTheEnd) {
+  accept();
+  ASSERT_TRUE(ask());
+  const auto client = open();
+  const std::string text(1000, 'x');
+  const platform::Buffer piece{reinterpret_cast<const std::byte*>(text.data()), text.size()};
+  client->send({&piece, 1});
+  EXPECT_TRUE(is_ended());
+}
+
+TEST_F(SharingTest, ABellThatRingsWithoutEndHarmsNobody) {
+  accept();
+  ASSERT_TRUE(ask());
+  const auto client = open();
+  const std::vector<std::byte> bells(100'000);
+  sockets_.send(bells);
+  const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req);
+  const platform::Buffer piece{asked.data(), asked.size()};
+  client->send({&piece, 1});
+  EXPECT_TRUE(comes_true([&] { return receiver_->handled == 1; }));
+}
+
+}  // namespace
+}  // namespace rr::channel

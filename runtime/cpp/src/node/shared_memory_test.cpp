@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two nodes that exchange their messages through shared memory: who has it, processes that are
+// killed, and a memory that is written over at any time.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "runtime/cpp/src/node/testing/child.hpp"
+#include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
+
+namespace rr::testing {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+struct Mapping {
+  std::byte* begin = nullptr;
+  std::size_t size = 0;
+};
+
+// The shared memories that this process has mapped.
+std::vector<Mapping> mappings() {
+  std::vector<Mapping> found;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find("/memfd:robdef") == std::string::npos) continue;
+    std::size_t dash = 0;
+    const std::uintptr_t begin = std::stoull(line, &dash, 16);
+    const std::uintptr_t end = std::stoull(line.substr(dash + 1), nullptr, 16);
+    found.push_back({reinterpret_cast<std::byte*>(begin), end - begin});
+  }
+  return found;
+}
+
+// The same memory at another place, where it stays for as long as this exists.
+class SecondMapping {
+ public:
+  explicit SecondMapping(const Mapping& first)
+      : bytes_(::mremap(first.begin, 0, first.size, MREMAP_MAYMOVE)), size_(first.size) {}
+  SecondMapping(SecondMapping&& other) noexcept
+      : bytes_(std::exchange(other.bytes_, MAP_FAILED)), size_(other.size_) {}
+  SecondMapping& operator=(SecondMapping&&) = delete;
+  ~SecondMapping() {
+    if (is_there()) ::munmap(bytes_, size_);
+  }
+
+  // False when the first one has gone before.
+  [[nodiscard]] bool is_there() const { return bytes_ != MAP_FAILED; }
+  // Something at a place of it, of the words most of the time.
+  void scribble(std::mt19937_64& random) const {
+    const std::size_t most = random() % 4 == 0 ? size_ : std::size_t{0x300};
+    const std::uint64_t value = random() >> (random() % 64);
+    const std::size_t at = random() % (most - sizeof value) & ~std::size_t{3};
+    std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, 1 + random() % sizeof value);
+  }
+
+ private:
+  void* bytes_;
+  std::size_t size_;
+};
+
+class SharedMemory : public ::testing::Test {
+ protected:
+  SharedMemory() {
+    static int count = 0;
+    run_ = test_folder() + "/shm" + std::to_string(count++);
+  }
+  [[nodiscard]] NodeOptions options(bool shares = true) const {
+    NodeOptions options;
+    options.local.user_run_dir = run_;
+    options.local.shared_memory = shares;
+    return options;
+  }
+  static std::string url(const Node& node) {
+    return "rr+local:///?nodeid=" + node.id().text() + "&service=counter";
+  }
+  [[nodiscard]] std::vector<std::string> words(std::vector<std::string> more) const {
+    more.insert(more.begin(), run_);
+    return more;
+  }
+
+  std::string run_;
+};
+
+// A service that is listened to in this process.
+struct Served {
+  explicit Served(NodeOptions options) : node(std::move(options)) {
+    node.register_service("counter", object);
+    node.listen("rr+local://");
+  }
+  std::shared_ptr<Counter> object = std::make_shared<Counter>();
+  Node node;
+};
+
+TEST_F(SharedMemory, IsUsedWhereBothWantIt) {
+  const Served server(options());
+  {
+    Node client(options());
+    auto counter = client.connect<CounterStub>(url(server.node));
+    counter->set_value(1.5);
+    EXPECT_EQ(counter->get_value(), 1.5);
+    EXPECT_EQ(mappings().size(), 2U);
+  }
+  EXPECT_TRUE(eventually([] { return mappings().empty(); }));
+}
+
+TEST_F(SharedMemory, IsNotUsedWhereOneDoesNotWantIt) {
+  for (const bool is_server : {true, false}) {
+    const Served server(options(is_server));
+    Node client(options(!is_server));
+    auto counter = client.connect<CounterStub>(url(server.node));
+    counter->set_value(2.5);
+    EXPECT_EQ(counter->get_value(), 2.5);
+    EXPECT_TRUE(mappings().empty());
+  }
+}
+
+TEST_F(SharedMemory, IsNotUsedWhereTheClientMayNotHoldSoMuch) {
+  NodeOptions small = options();
+  small.budget.before_session = 64 * 1024;
+  small.budget.reserve = 16 * 1024;
+  const Served server(small);
+  Node client(options());
+  auto counter = client.connect<CounterStub>(url(server.node));
+  counter->set_value(3.5);
+  EXPECT_EQ(counter->get_value(), 3.5);
+  EXPECT_TRUE(mappings().empty());
+}
+
+TEST_F(SharedMemory, CarriesWhatIsLargerThanARing) {
+  const Served server(options());
+  Node client(options());
+  auto counter = client.connect<CounterStub>(url(server.node));
+  const Array<std::uint8_t> bytes = counter->blob(3'000'000);
+  ASSERT_EQ(bytes.size(), 3'000'000U);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] != static_cast<std::uint8_t>(i * 31 + 7)) ++wrong;
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(counter->take(Array<double>(std::size_t{400'000})), 400'000U);
+}
+
+TEST_F(SharedMemory, IsForManyCallersWhoSpin) {
+  NodeOptions spinning = options();
+  spinning.spin = std::chrono::microseconds(30);
+  const Served server(spinning);
+  Node client(spinning);
+  auto counter = client.connect<CounterStub>(url(server.node));
+  std::atomic<int> right{0};
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([&, caller] {
+      for (int i = 0; i < 500; ++i) {
+        if (counter->add(caller, i) == caller + i) ++right;
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(right, 2000);
+}
+
+// Each time at another moment of its calls.
+TEST_F(SharedMemory, AServerMayBeKilledAtAnyTime) {
+  std::mt19937 random(46);
+  Node client(options());
+  for (int round = 0; round < 150 / slowness(); ++round) {
+    Child server(words({"serve"}), RR_SHARED_MEMORY_PEER);
+    auto counter = client.connect<CounterStub>(server.wait_for("ready"));
+    std::atomic<int> failed{0};
+    std::vector<std::thread> callers;
+    for (int caller = 0; caller < 2; ++caller) {
+      callers.emplace_back([&, caller] {
+        try {
+          while (true) {
+            if (caller == 0) counter->get_value();
+            if (caller == 1) counter->blob(100'000);
+          }
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::connection_error) << error.message();
+          ++failed;
+        }
+      });
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
+    server.signal(SIGKILL);
+    for (std::thread& caller : callers) caller.join();
+    EXPECT_EQ(failed, 2);
+  }
+  EXPECT_TRUE(eventually([] { return mappings().empty(); }));
+}
+
+TEST_F(SharedMemory, AClientMayBeKilledAtAnyTime) {
+  std::mt19937 random(47);
+  const Served server(options());
+  Node other(options());
+  auto counter = other.connect<CounterStub>(url(server.node));
+  counter->set_value(4.5);
+  const std::size_t before = mappings().size();
+  const std::size_t descriptors = ProcessState::now().descriptors;
+  for (int round = 0; round < 150 / slowness(); ++round) {
+    Child client(words({"call", url(server.node)}), RR_SHARED_MEMORY_PEER);
+    client.wait_for("calling");
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
+    client.signal(SIGKILL);
+    EXPECT_EQ(counter->get_value(), 4.5);
+  }
+  EXPECT_TRUE(eventually([&] { return mappings().size() == before; })) << mappings().size();
+  EXPECT_TRUE(eventually([&] { return ProcessState::now().descriptors <= descriptors; }));
+}
+
+// Both sides are in this process, and each finds what the other one could have written. Nothing
+// but the connection may come to harm.
+TEST_F(SharedMemory, MayBeWrittenOverByTheOtherSide) {
+  NodeOptions hasty = options();
+  hasty.request_timeout = 50ms;
+  const Served server(options());
+  Node client(hasty);
+  Node other(options(false));
+  auto undisturbed = other.connect<CounterStub>(url(server.node));
+  undisturbed->set_value(5.5);
+  std::mt19937_64 random(48);
+  int broken = 0;
+  for (int round = 0; round < 200 / slowness(); ++round) {
+    auto counter = client.connect<CounterStub>(url(server.node));
+    counter->get_value();
+    std::vector<SecondMapping> memories;
+    for (const Mapping& mapping : mappings()) {
+      SecondMapping second(mapping);
+      if (second.is_there()) memories.push_back(std::move(second));
+    }
+    std::atomic<bool> is_over{false};
+    std::thread writer([&, seed = random()] {
+      std::mt19937_64 chance(seed);
+      while (!is_over && !memories.empty()) {
+        memories[chance() % memories.size()].scribble(chance);
+        if (chance() % 4 == 0) std::this_thread::yield();
+      }
+    });
+    for (int i = 0; i < 20 && counter.is_open(); ++i) {
+      try {
+        counter->get_value();
+        counter->blob(10'000);
+      } catch (const Error&) {
+        ++broken;
+      }
+    }
+    is_over = true;
+    writer.join();
+    EXPECT_EQ(undisturbed->get_value(), 5.5);
+  }
+  EXPECT_NE(broken, 0);
+  EXPECT_TRUE(eventually([] { return mappings().empty(); })) << mappings().size();
+}
+
+}  // namespace
+}  // namespace rr::testing
