@@ -303,6 +303,7 @@ TEST_F(PeerLayersTest, ACarrierOfAChannelHasNoLayers) {
   auto carrier = std::make_unique<Bare>();
   Carrier* const bare = carrier.get();
   EXPECT_EQ(bare->failure(), "") << "there is nothing to say";
+  EXPECT_EQ(bare->shared(), nullptr);
   PeerLayers layers({.is_server = true}, link_, sending_, std::move(carrier));
   EXPECT_EQ(layers.carrier(), bare);
   EXPECT_EQ(sending_.carrier(), bare);

@@ -13,6 +13,16 @@
 #include "runtime/cpp/src/platform/shared_memory.hpp"
 
 namespace rr::channel {
+namespace {
+
+std::size_t unsent_of(const Carrier* carrier) { return carrier == nullptr ? 0 : carrier->unsent(); }
+
+// Bytes of answers that may wait before requests do.
+std::size_t most_answers(const SendQueue::Terms& terms, bool is_over) {
+  return is_over ? std::min(stream_chunk, terms.answer_limit) : terms.answer_limit;
+}
+
+}  // namespace
 
 SendQueue::SendQueue(const Terms& terms, const ConnectionTap& tap)
     : terms_(terms),
@@ -88,7 +98,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   if (sent < 0) return false;
   const bool is_left = !overtakes && sent != static_cast<std::ptrdiff_t>(message.size());
   if (is_left) queue(message, static_cast<std::size_t>(sent), how, mark);
-  has_rest = is_left || (overtakes && !outbox_.empty()) || carrier_unsent() != 0;
+  has_rest = is_left || (overtakes && !outbox_.empty()) || unsent_of(carrier_) != 0;
   if (!has_rest && charge_.bytes() == 0) {  // nearly always
     note_waiting();
     return true;
@@ -188,7 +198,7 @@ SendQueue::Flushed SendQueue::flush() {
   Flushed result;
   const MutexLock lock(mutex_);
   take_gathered();
-  if ((outbox_.empty() && carrier_unsent() == 0) || is_closed_) return result;
+  if ((outbox_.empty() && unsent_of(carrier_) == 0) || is_closed_) return result;
   const std::size_t before = unsent();
   const bool had_rest = has_unsent();
   send_waiting(result);
@@ -199,7 +209,7 @@ SendQueue::Flushed SendQueue::flush() {
   last_sent_.store(coarse_now(), std::memory_order_relaxed);
   if (do_answers_wait()) {
     result.took_answers = unsent() < before;
-    result.may_read_on = waiting_answers() <= most_answers() / 2;
+    result.may_read_on = waiting_answers() <= most_answers(terms_, is_over_) / 2;
     if (result.may_read_on) answers_wait_ = false;
   }
   return result;
@@ -208,20 +218,15 @@ SendQueue::Flushed SendQueue::flush() {
 void SendQueue::send_waiting(Flushed& result) {
   result.is_broken = result.is_broken || (carrier_ != nullptr && !carrier_->flush()) ||
                      outbox_.send(terms_.socket, {}, carrier_) < 0;
-  result.has_rest = !outbox_.empty() || carrier_unsent() != 0;
+  result.has_rest = !outbox_.empty() || unsent_of(carrier_) != 0;
   has_unsent_ = result.has_rest;
 }
 
 bool SendQueue::check_answers() {
   const MutexLock lock(mutex_);
-  if (has_unsent() && !is_closed_ && waiting_answers() > most_answers()) answers_wait_ = true;
+  if (has_unsent() && !is_closed_ && waiting_answers() > most_answers(terms_, is_over_))
+    answers_wait_ = true;
   return do_answers_wait();
-}
-
-// Bytes of answers that may wait before requests do.
-std::size_t SendQueue::most_answers() const {
-  return is_over_.load(std::memory_order_relaxed) ? std::min(stream_chunk, terms_.answer_limit)
-                                                  : terms_.answer_limit;
 }
 
 // Bytes of answers that wait, at most. Events and packets do not count: a client that
@@ -246,11 +251,7 @@ Traffic SendQueue::traffic() const {
           .pipe_packets = sent_.packets.get() + also.packet_count()};
 }
 
-std::size_t SendQueue::unsent() const { return outbox_.size() + carrier_unsent(); }
-
-std::size_t SendQueue::carrier_unsent() const {
-  return carrier_ == nullptr ? 0 : carrier_->unsent();
-}
+std::size_t SendQueue::unsent() const { return outbox_.size() + unsent_of(carrier_); }
 
 bool SendQueue::is_empty() const {
   const MutexLock lock(mutex_);

@@ -163,8 +163,6 @@ class SendQueue {
   void settle() RR_REQUIRES(mutex_);
   void note_waiting() RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t unsent() const RR_REQUIRES(mutex_);
-  [[nodiscard]] std::size_t carrier_unsent() const RR_REQUIRES(mutex_);
-  [[nodiscard]] std::size_t most_answers() const RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t waiting_answers() const RR_REQUIRES(mutex_);
   bool gather_if_streaming(Writer& message, bool& is_first);
   [[nodiscard]] bool has_room_for(const Writer& message) const RR_REQUIRES(gathering_);

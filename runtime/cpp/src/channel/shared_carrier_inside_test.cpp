@@ -66,6 +66,8 @@ TEST_F(SharedCarrierTest, CarriesBytesInBothDirections) {
   EXPECT_EQ(received(*client_), "answered");
   EXPECT_EQ(received(*client_), "nothing");
   EXPECT_EQ(received(*server_), "nothing");
+  Carrier& carrier = *client_;
+  EXPECT_EQ(carrier.shared(), client_.get());
 }
 
 TEST_F(SharedCarrierTest, RingsOnceForAServerThatWatches) {

@@ -46,6 +46,13 @@ class SharedRingTest : public ::testing::Test {
   std::uint32_t room_wakes_ = 0;
 };
 
+TEST(RingSteps, SleepOnlyOnAWordThatIsAsItWasSeen) {
+  Synchronization::SleepWord word{1};
+  Synchronization::sleep_on_shared(word, 0, 60s);  // it is another: returns at once
+  Synchronization::sleep_on_shared(word, 1, 1ms);  // nothing wakes it: returns for its time
+  EXPECT_EQ(word.load(), 1U);
+}
+
 TEST(RingSteps, SayWhoIsToBeWoken) {
   using Ring = RingSteps<Synchronization>;
   SharedRing::Words words;
