@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "runtime/cpp/src/channel/operations.hpp"
 #include "runtime/cpp/src/channel/shared_carrier.hpp"
@@ -37,17 +38,24 @@ rr::MessageTree message_of(rr::EntryType type, std::string_view member) {
   return message;
 }
 
-// Sends a request, and waits for its answer, in which names may be codes.
+// Sends a request, and waits for its answer, in which names may be codes. Answers to what was sent
+// earlier are left for others.
 rr::MessageTree asked(Stream& stream, const rr::MessageTree& request, rr::EntryType answer_type) {
   stream.send(rr::write_tree(request));
+  std::vector<Bytes> others;
   Bytes bytes;
-  rr::MessageTree answer;
-  if (stream.receive(bytes, answer_patience) != Arrival::message || !rr::read_tree(bytes, answer) ||
-      answer.entries.size() != 1 || answer.entries[0].type != answer_type ||
-      answer.entries[0].error != 0) {
-    throw std::runtime_error("there is no shared memory");
+  while (stream.receive(bytes, answer_patience) == Arrival::message) {
+    rr::MessageTree answer;
+    if (!rr::read_tree(bytes, answer) || answer.entries.size() != 1) break;
+    const rr::EntryTree& entry = answer.entries[0];
+    if (entry.type == answer_type && entry.member != channel::create_connection) {
+      if (entry.error != 0) break;
+      stream.put_back(others);
+      return answer;
+    }
+    others.push_back(bytes);
   }
-  return answer;
+  throw std::runtime_error("there is no shared memory");
 }
 
 std::unique_ptr<channel::SharedCarrier> carrier_of(channel::SharedRings rings, bool is_service,

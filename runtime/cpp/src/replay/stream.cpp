@@ -143,6 +143,12 @@ bool Stream::take_message(Bytes& message) {
   return true;
 }
 
+void Stream::put_back(const std::vector<Bytes>& messages) {
+  Bytes bytes;
+  for (const Bytes& message : messages) bytes.insert(bytes.end(), message.begin(), message.end());
+  received_.insert(received_.begin(), bytes.begin(), bytes.end());
+}
+
 Arrival Stream::receive(Bytes& message, Milliseconds limit) {
   const auto end = Clock::now() + limit;
   while (true) {

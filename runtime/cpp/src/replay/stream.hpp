@@ -67,6 +67,8 @@ class Stream {
   void set_filter(std::function<bool(Stream&, const Bytes&)> filter) {
     filter_ = std::move(filter);
   }
+  /// Messages that have come already, as receive() has them: it has them again, before all others.
+  void put_back(const std::vector<Bytes>& messages);
   /// What has come with bytes since the last call, as platform::receive_with_handle() has it.
   platform::Descriptor take_handle() { return std::move(handle_); }
 

@@ -35,7 +35,8 @@ std::ptrdiff_t receive_with_handle(int socket, std::span<std::byte> room, Descri
 }
 
 bool sleep_on_shared(const SleepWord& word, std::uint32_t seen, std::chrono::nanoseconds time) {
-  return sleep_on(word, seen, Clock::now() + std::chrono::duration_cast<Clock::duration>(time));
+  return sleep_on(word, seen,
+                  Time::clock::now() + std::chrono::duration_cast<Time::duration>(time));
 }
 
 void wake_shared(const SleepWord* word) { wake(word); }
