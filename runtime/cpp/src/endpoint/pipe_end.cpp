@@ -86,7 +86,8 @@ std::size_t PipeEnd::State::unacknowledged() const {
 
 void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
   const MutexLock lock(mutex_);
-  std::swap(acknowledged_function_, function);  // what was there before ends behind the lock
+  // What is not kept ends after the lock, and with a closed end all of it.
+  if (!is_closed_) std::swap(acknowledged_function_, function);
 }
 
 void PipeEnd::State::count_dropped() const {

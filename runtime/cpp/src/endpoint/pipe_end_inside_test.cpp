@@ -258,6 +258,30 @@ TEST_F(PipeEndTest, AFunctionGetsWhatWasThereBefore) {
   EXPECT_EQ(first.get_future().get(), 1);
 }
 
+// Such a function often has the end itself.
+TEST_F(PipeEndTest, FunctionsThatComeAfterItsEndAreNotKept) {
+  const auto held = std::make_shared<int>();
+  const std::weak_ptr<int> seen = held;
+  const End end = make();
+  end->finish();
+  end->on_received([held](const std::shared_ptr<void>&) {}).detach();
+  end->on_acknowledged([held](std::uint32_t) {});
+  core_->stop();  // all that was posted has run
+  EXPECT_EQ(seen.use_count(), 1);
+}
+
+TEST_F(PipeEndTest, FunctionsGoWithItsEnd) {
+  const auto held = std::make_shared<int>();
+  const std::weak_ptr<int> seen = held;
+  const End end = make();
+  end->on_received([held](const std::shared_ptr<void>&) {}).detach();
+  end->on_acknowledged([held](std::uint32_t) {});
+  EXPECT_EQ(seen.use_count(), 3);
+  end->finish();
+  core_->stop();  // all that was posted has run
+  EXPECT_EQ(seen.use_count(), 1);
+}
+
 class PromisedPacket final : public Completion {
  public:
   explicit PromisedPacket(std::promise<double>& promise) : promise_(promise) {}

@@ -130,10 +130,12 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
     std::shared_ptr<void> value = packets_.pop();
     const MutexUnlock unlock(mutex_);
     hand_to(std::move(receiver), std::move(value));
-  } else if (is_closed_ && (receiver_ || closed_function_)) {
+  } else if (is_closed_ && (receiver_ || closed_function_ || acknowledged_function_)) {
     auto ended = std::exchange(receiver_, nullptr);
+    auto acknowledged = std::exchange(acknowledged_function_, nullptr);
     auto closed = std::exchange(closed_function_, nullptr);
     const MutexUnlock unlock(mutex_);
+    acknowledged = nullptr;
     tell_closed(std::move(ended), std::move(closed));
   } else {
     return false;
@@ -222,7 +224,7 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
   {
     const MutexLock lock(mutex_);
     receiver_.swap(before);
-    has_more = !packets_.empty();
+    has_more = !packets_.empty() || is_closed_;  // after the end it goes, with what it holds
     side = side_;
   }
   if (has_more) deliver_soon();
