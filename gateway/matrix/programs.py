@@ -80,18 +80,20 @@ class Program:
 class Talker(Program):
     """One that answers each line with a line (gateway/matrix/commands.hpp)."""
 
+    rest = b""
+
     def talks(self):
         return True
 
     def read(self, seconds):
-        line = b""
         end = time.monotonic() + seconds
-        while not line.endswith(b"\n"):
+        while b"\n" not in self.rest:
             ready, _, _ = select.select([self.process.stdout], [], [], max(0, end - time.monotonic()))
             part = os.read(self.process.stdout.fileno(), 65536) if ready else b""
             if not part:
                 raise Failure(f"{self.name} does not answer: {self.text()[-2000:]}")
-            line += part
+            self.rest += part
+        line, self.rest = self.rest.split(b"\n", 1)
         return line.decode().strip()
 
     def await_ready(self, seconds):
