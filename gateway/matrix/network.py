@@ -136,6 +136,8 @@ else:
                 peer.send(bytes(16384))
             except TimeoutError:
                 pass
+            except ConnectionError:
+                break
         peer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b'\\1\\0\\0\\0\\0\\0\\0\\0')
 """
 
