@@ -59,7 +59,9 @@ bool FarService::take(const Message& message) {
   if (message.topic == topic_ + "/$life") {
     robot_life_ = text_of(message.payload);
   } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
-    gateway_life_ = text_of(message.payload);
+    const std::string before = std::exchange(gateway_life_, text_of(message.payload));
+    // Requests that it did not get are not waited for.
+    if (gateway_life_ == "up" && before != "up") reconnected();
   } else if (message.topic.starts_with(topic_ + "/$def")) {
     take_definition(message, std::string_view(message.topic).substr(topic_.size() + 5));
   }

@@ -195,6 +195,7 @@ class MqttCarrier final : public Carrier {
     is_refused_ = false;
     mosquitto_int_option(client.get(), MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);
     mosquitto_int_option(client.get(), MOSQ_OPT_TCP_NODELAY, 1);
+    mosquitto_int_option(client.get(), MOSQ_OPT_RECEIVE_MAXIMUM, limits_.receive);
     mosquitto_threaded_set(client.get(), true);
     if (!broker_.user.empty()) {
       mosquitto_username_pw_set(client.get(), broker_.user.c_str(), broker_.password.c_str());

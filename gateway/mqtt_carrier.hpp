@@ -13,6 +13,7 @@ namespace rr::gateway {
 /// How a broker of MQTT 5 is used.
 struct MqttLimits {
   std::size_t in_flight = 64;  ///< messages that the broker has not acknowledged, at most
+  int receive = 1'000;  ///< messages of the broker that this side has not acknowledged, at most
   /// To the next attempt to connect, at first; it doubles up to `max_retry`.
   std::chrono::milliseconds retry{100};
   std::chrono::milliseconds max_retry{3'000};

@@ -71,6 +71,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
     std::optional<Message> message;  // that is to be published
     std::chrono::steady_clock::time_point due{};
     Message last;
+    std::chrono::steady_clock::time_point published{};  // when `last` was, for the first time
+    std::chrono::steady_clock::time_point again{};      // when it is published once more
   };
   struct StreamExport {
     std::unique_ptr<StreamWriter> writer;
@@ -98,6 +100,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
                   const TimeSpec& time);
   bool pump_retained(Carrier& carrier);
   bool pump_wire(WireExport& wire, Carrier& carrier);
+  static void repeat_value(WireExport& wire, std::chrono::steady_clock::time_point now);
   StreamExport* stream(const std::string& path, const std::string& member, bool makes);
   StreamExport* begin_stream(const std::string& path, const std::string& member);
   void take_record(StreamExport* stream,

@@ -16,6 +16,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// The last value of a wire is published again after 1, 2, 4 ... 64, 128, 192 ... seconds.
+constexpr std::chrono::seconds first_repeat{1};
+constexpr std::chrono::seconds last_repeat{64};
+
 /// As a folder is called: no separators of folders are in a path.
 std::string folder_name(const std::string& path, const std::string& member) {
   return path.empty() ? member : path + "." + member;
@@ -184,11 +188,30 @@ bool ServiceExporter::pump_wire(WireExport& wire, Carrier& carrier) {
     message.expiry = wire.lifespan;
     wire.message = std::move(message);
   }
+  if (!wire.message) repeat_value(wire, now);
   if (!wire.message) return true;
   if (carrier.publish(*wire.message) == Published::later) return false;
+  const bool is_new = wire.last.find("number") != wire.message->find("number");
+  if (is_new) wire.published = now;
   wire.last = *std::exchange(wire.message, std::nullopt);
   wire.due = now + wire.period;
+  // As long after the last time as that was after the first.
+  wire.again = now + std::clamp<Clock::duration>(now - wire.published, first_repeat, last_repeat);
   return true;
+}
+
+// A broker drops what a slow reader does not take in time, and says so to nobody. While values
+// follow, the next one makes up for it; the last one has to be sent once more.
+void ServiceExporter::repeat_value(WireExport& wire, Clock::time_point now) {
+  if (wire.last.topic.empty() || now < wire.again) return;
+  Message message = wire.last;
+  if (wire.lifespan) {
+    // It does not live longer by that.
+    const auto left = *wire.lifespan - (now - wire.published);
+    if (left < std::chrono::seconds(1)) return;
+    message.expiry = std::chrono::floor<std::chrono::seconds>(left);
+  }
+  wire.message = std::move(message);
 }
 
 void ServiceExporter::attach_pipe(const std::string& path, const dynamic::Object& object,

@@ -22,6 +22,7 @@ void StreamReader::receive(Message message, Clock::time_point now) {
   if (epoch_ != 0 && *epoch != epoch_) forget();
   if (is_answer(message)) {
     heard_ = now;
+    take_answer_time(now);
     // The end of what was asked for: what is missing now was lost on the way.
     if (*kind != "head" && *number >= std::min(asked_until_, known_last_)) is_answered_ = true;
   }
@@ -30,6 +31,14 @@ void StreamReader::receive(Message message, Clock::time_point now) {
   } else if (*epoch == epoch_) {
     take(std::move(message), *number);
   }
+}
+
+// Answers wait where all messages for this reader wait. One who asks again meanwhile makes the
+// queue longer, and would ask ever more. What was asked for twice says nothing of the time.
+void StreamReader::take_answer_time(Clock::time_point now) {
+  if (std::exchange(is_heard_, true) || is_repeated_) return;
+  const auto took = std::chrono::ceil<std::chrono::milliseconds>(now - asked_);
+  patience_ = std::clamp(2 * took, options_.patience, options_.longest_patience);
 }
 
 // The log was made anew: what the old one had and this reader has not got is lost.
@@ -108,6 +117,8 @@ void StreamReader::hand_out(const Message& message, std::uint64_t number) {
 void StreamReader::reconnected() {
   must_ask_ = true;
   has_asked_ = false;
+  is_heard_ = true;
+  patience_ = options_.patience;
 }
 
 std::optional<StreamAsk> StreamReader::ask(Clock::time_point now) {
@@ -117,10 +128,15 @@ std::optional<StreamAsk> StreamReader::ask(Clock::time_point now) {
     return std::nullopt;
   }
   const bool is_answered = has_asked_ && !must_ask_ && (is_answered_ || next_ > asked_until_);
-  const bool is_late = now - heard_ >= options_.patience;
+  const bool is_late = now - heard_ >= patience_;
   // What is announced and has not come is on its way most of the time; a hole is none.
   const bool is_hole = !has_asked_ && (must_ask_ || !kept_.empty());
   if (!is_answered && !is_late && !is_hole) return std::nullopt;
+  const bool was_repeated = std::exchange(is_repeated_, has_asked_ && !is_heard_);
+  // One request may have been lost; several wait.
+  if (is_repeated_ && was_repeated) patience_ = std::min(2 * patience_, options_.longest_patience);
+  is_heard_ = false;
+  asked_ = now;
   has_asked_ = true;
   is_answered_ = false;
   heard_ = now;

@@ -37,7 +37,8 @@ class StreamReader {
     std::size_t records = 1024;
     std::size_t bytes = std::size_t{4} * 1024 * 1024;
     std::uint64_t ask_count = 256;
-    std::chrono::milliseconds patience{500};
+    std::chrono::milliseconds patience{500};             ///< at first, and at least
+    std::chrono::milliseconds longest_patience{30'000};  ///< after several times in vain
   };
   /// What records become.
   struct Sink {
@@ -72,6 +73,7 @@ class StreamReader {
   void hand_out(const Message& message, std::uint64_t number);
   void skip_to(std::uint64_t number);
   void forget();
+  void take_answer_time(Clock::time_point now);
 
   Sink sink_;
   Options options_;
@@ -86,6 +88,10 @@ class StreamReader {
   std::uint64_t asked_until_ = 0;
   bool is_answered_ = false;   // the end of what was asked for has come
   Clock::time_point heard_{};  // when something was asked for, or was answered, last
+  Clock::time_point asked_{};
+  bool is_heard_ = true;      // an answer has come since
+  bool is_repeated_ = false;  // none had come to what was asked for before
+  std::chrono::milliseconds patience_ = options_.patience;
 };
 
 }  // namespace rr::gateway

@@ -38,7 +38,11 @@ std::uint64_t number_in(const Message& message) {
 /// A writer, a reader called `hub`, and the link between them.
 class Link {
  public:
-  explicit Link(std::uint32_t seed = 1, LogLimits limits = {}) : random_(seed), limits_(limits) {
+  explicit Link(std::uint32_t seed = 1, LogLimits limits = {},
+                StreamReader::Options options = {.records = 50,
+                                                 .ask_count = 32,
+                                                 .patience = milliseconds(200)})
+      : random_(seed), limits_(limits), options_(options) {
     restart_writer();
     restart_reader();
   }
@@ -52,10 +56,11 @@ class Link {
     StreamReader::Sink sink;
     sink.record = [this](const Message& message) { got.push_back(number_in(message)); };
     sink.gap = [this](const StreamGap& gap) { gaps.push_back(gap); };
-    reader_ = std::make_unique<StreamReader>(
-        sink, StreamReader::Options{.records = 50, .ask_count = 32, .patience = milliseconds(200)});
+    reader_ = std::make_unique<StreamReader>(sink, options_);
   }
   void forget_all() { link_.clear(); }
+  void forget_first(std::ptrdiff_t count) { link_.erase(link_.begin(), link_.begin() + count); }
+  [[nodiscard]] std::size_t waiting() const { return link_.size(); }
   void remove_log() {
     writer_.reset();
     std::filesystem::remove_all(folder_.path());
@@ -78,9 +83,10 @@ class Link {
       writer_->done(fits ? Published::taken : Published::refused);
       if (fits) send(*std::move(message));
     }
-    for (int i = 0; i < 20 && !link_.empty(); ++i) {
+    for (int i = 0; i < capacity && !link_.empty(); ++i) {
       reader_->receive(std::move(link_.front()), now_);
       link_.pop_front();
+      ++carried;
     }
     answer_reader();
   }
@@ -107,6 +113,8 @@ class Link {
   double late = 0;
   std::size_t largest = 8;
   bool is_up = true;
+  int capacity = 20;  // messages in a step
+  int carried = 0;    // messages in all
 
  private:
   bool happens(double share) {
@@ -135,6 +143,7 @@ class Link {
   Folder folder_;
   std::mt19937 random_;
   LogLimits limits_;
+  StreamReader::Options options_;
   std::unique_ptr<StreamWriter> writer_;
   std::unique_ptr<StreamReader> reader_;
   std::deque<Message> link_;
@@ -209,6 +218,45 @@ TEST(GatewayStreams, WhatWasLoggedWhileTheLinkWasDownComesLater) {
   link.reader().reconnected();
   ASSERT_TRUE(link.settle());
   EXPECT_EQ(link.got, up_to(5'000));
+}
+
+// A broker has 1,500 messages for a reader that takes 200 a second, and 100 a second follow: an
+// answer needs 7 s. A reader that asks again all the time meanwhile gets ever more to take.
+TEST(GatewayStreams, AReaderThatIsBehindDoesNotAskEverMore) {
+  Link link(1, {}, {});
+  ASSERT_TRUE(link.settle());
+  link.capacity = 2;
+  for (std::uint64_t i = 1; i <= 2'000; ++i) link.append(i);
+  while (link.waiting() < 1'500) link.step();
+  link.forget_first(300);
+  link.carried = 0;
+  for (std::uint64_t i = 2'001; i <= 4'000; ++i) {
+    link.append(i);
+    link.step();
+  }
+  ASSERT_TRUE(link.settle());
+  EXPECT_EQ(link.got, up_to(4'000));
+  EXPECT_TRUE(link.gaps.empty());
+  // Each once, most once more since what is missing is in front of them, and some in vain.
+  EXPECT_LE(link.carried, 10'000);
+}
+
+// An hour of the test's clock, with a packet each 100 ms; the writer's own work goes on meanwhile.
+TEST(GatewayStreams, WhatWasLoggedInAnHourWithoutTheLinkComesLater) {
+  Link link;
+  ASSERT_TRUE(link.settle());
+  link.is_up = false;
+  constexpr std::uint64_t last = 36'000;
+  for (std::uint64_t i = 1; i <= last; ++i) {
+    link.append(i);
+    for (int step = 0; step < 10; ++step) link.step();
+  }
+  EXPECT_TRUE(link.got.empty());
+  link.is_up = true;
+  link.reader().reconnected();
+  ASSERT_TRUE(link.settle());
+  EXPECT_EQ(link.got, up_to(last));
+  EXPECT_TRUE(link.gaps.empty());
 }
 
 TEST(GatewayStreams, ConfirmedRecordsLeaveTheDisk) {

@@ -2,6 +2,8 @@
 // The peer of fan_out_bench: one MQTT publisher, many subscribers in other processes, and mosquitto
 // between them. Same values, same line at the end; the CPU time is that of the broker.
 //   fan_out_mosquitto [clients] [values] [values per second] [bytes]
+//   fan_out_mosquitto read PORT CLIENTS TOPIC       the subscribers of a process, for a topic
+//   fan_out_mosquitto publish PORT TOPIC VALUES PER_SECOND BYTES     the publisher alone
 #include <arpa/inet.h>
 #include <mosquitto.h>
 #include <netinet/in.h>
@@ -33,7 +35,7 @@ using Clock = std::chrono::steady_clock;
 using rr::testing::Child;
 
 constexpr int clients_of_a_process = 250;
-constexpr const char* topic = "bench/level";
+constexpr const char* bench_topic = "bench/level";
 
 void say(const std::string& line) { std::cout << line << std::endl; }
 
@@ -94,7 +96,7 @@ void pump(int poll, const std::atomic<bool>& is_over) {
 
 // A process with subscribers: `report` says how many values have come, and how many have the
 // newest.
-void read(int port, int count) {
+void read(int port, int count, const char* topic) {
   std::vector<std::unique_ptr<Reader>> readers;
   const int poll = ::epoll_create1(0);
   for (int i = 0; i < count; ++i) {
@@ -161,6 +163,29 @@ double resident(pid_t process) {
   return pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
+// Values with numbers from 1, at times that do not depend on how long each takes.
+void publish(mosquitto* publisher, const char* topic, int count, double rate, int bytes) {
+  std::vector<double> value(static_cast<std::size_t>(bytes) / sizeof(double));
+  const auto begin = Clock::now();
+  for (int i = 0; i < count; ++i) {
+    std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(
+                                              std::chrono::duration<double>(i / rate)));
+    value[0] = i + 1;
+    check(
+        mosquitto_publish(publisher, nullptr, topic,
+                          static_cast<int>(value.size() * sizeof(double)), value.data(), 0, false),
+        "publish");
+  }
+}
+
+void publish_alone(int port, const char* topic, int count, double rate, int bytes) {
+  const Client publisher = connected(port, nullptr);
+  check(mosquitto_loop_start(publisher.get()), "thread");
+  publish(publisher.get(), topic, count, rate, bytes);
+  mosquitto_disconnect(publisher.get());
+  mosquitto_loop_stop(publisher.get(), false);
+}
+
 class Broker {
  public:
   explicit Broker(int port) : settings_(std::filesystem::temp_directory_path() / name(port)) {
@@ -197,19 +222,9 @@ void measure(int clients, int values, double rate, int bytes) {
   }
   for (Child& one : processes) one.wait_for("ready");
   const double idle = resident(broker.id());
-  std::vector<double> value(static_cast<std::size_t>(bytes) / sizeof(double));
   const auto send = [&](int count) {
     const double before = cpu_of(broker.id());
-    const auto begin = Clock::now();
-    for (int i = 0; i < count; ++i) {
-      std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(
-                                                std::chrono::duration<double>(i / rate)));
-      value[0] = i + 1;
-      check(mosquitto_publish(publisher.get(), nullptr, topic,
-                              static_cast<int>(value.size() * sizeof(double)), value.data(), 0,
-                              false),
-            "publish");
-    }
+    publish(publisher.get(), bench_topic, count, rate, bytes);
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     const double cpu = cpu_of(broker.id()) - before;
     double received = 0;
@@ -239,7 +254,10 @@ int main(int count, char** words) {
   mosquitto_lib_init();
   const std::string role = count > 1 ? words[1] : "";
   if (role == "read") {
-    read(std::atoi(words[2]), std::atoi(words[3]));
+    read(std::atoi(words[2]), std::atoi(words[3]), count > 4 ? words[4] : bench_topic);
+  } else if (role == "publish" && count == 7) {
+    publish_alone(std::atoi(words[2]), words[3], std::atoi(words[4]), std::atof(words[5]),
+                  std::atoi(words[6]));
   } else {
     const auto number = [&](int place, double otherwise) {
       return count > place ? std::atof(words[place]) : otherwise;
