@@ -86,8 +86,8 @@ class SocketWatch {
 
   // Milliseconds; small, as there is one for each connection.
   static constexpr std::uint8_t first_period = 1;
-  static constexpr std::uint8_t longest_period = 8;
-  static constexpr std::uint8_t pinned_period = 10;
+  static constexpr std::uint8_t longest_period = 16;
+  static constexpr std::uint8_t pinned_period = 20;
 
   Watcher& watcher_;
   const int socket_;
