@@ -26,6 +26,7 @@ using testing::OverBroker;
 using testing::Program;
 using testing::RealBroker;
 using testing::Rig;
+using testing::value_comes;
 
 class Brokers : public OverBroker {
  protected:
@@ -218,12 +219,7 @@ TEST_P(Brokers, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
   Rig& all = make_rig();
   const auto bench = all.connect();
   auto force = bench->wire("force").connect();
-  const auto newest_is = [&](double wanted) {
-    return comes_true([&] {
-      const auto value = force.try_in();
-      return value && value->value.as<double>() == wanted;
-    });
-  };
+  const auto newest_is = [&](double wanted) { return value_comes(force, wanted); };
   all.robot.bench().wire("force").set_in(1);
   ASSERT_TRUE(newest_is(1));
   broker->kill();

@@ -20,6 +20,7 @@ using testing::Faults;
 using testing::Kept;
 using testing::MemoryBroker;
 using testing::Rig;
+using testing::value_comes;
 
 template <class Call>
 ErrorCode code_of(Call call, std::string* text = nullptr) {
@@ -151,12 +152,7 @@ TEST_F(Gateways, AWireHasItsNewestValueAfterTheServingGatewayWasRestarted) {
 TEST_F(Gateways, AWireHasItsNewestValueAfterTheBrokerHasDroppedIt) {
   const auto bench = rig.connect();
   auto force = bench->wire("force").connect();
-  const auto newest_is = [&](double wanted) {
-    return comes_true([&] {
-      const auto value = force.try_in();
-      return value && value->value.as<double>() == wanted;
-    });
-  };
+  const auto newest_is = [&](double wanted) { return value_comes(force, wanted); };
   rig.robot.bench().wire("force").set_in(1);
   ASSERT_TRUE(newest_is(1));
   broker.set_faults({.dropped = 1});

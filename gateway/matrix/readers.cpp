@@ -252,29 +252,14 @@ void run(std::uint64_t number, int port, std::uint64_t first, std::uint64_t coun
   Desk desk(number, port, first, count);
   take_commands(
       std::to_string(count),
-      {{"calls",
-        [&](std::istringstream& words) {
-          double rate = 0;
-          words >> rate;
-          desk.set_calls(rate);
-          return "set";
-        }},
+      {{"calls", with_value<double>("set", [&](double rate) { desk.set_calls(rate); })},
        {"phase",
-        [&](std::istringstream& words) {
-          std::string name;
-          words >> name;
-          desk.ages.begin(name);
-          return "begun";
-        }},
+        with_value<std::string>("begun", [&](const std::string& name) { desk.ages.begin(name); })},
        {"progress", [&](auto&) { return desk.list([](const Seen& one) { return one.last(); }); }},
        {"newest", [&](auto&) { return desk.list([](const Seen& one) { return one.newest(); }); }},
        {"waiting", [&](auto&) { return desk.list([](const Seen& one) { return one.waiting(); }); }},
-       {"report", [&](std::istringstream& words) {
-          std::string path;
-          words >> path;
-          desk.write(path);
-          return "written";
-        }}});
+       {"report",
+        with_value<std::string>("written", [&](const std::string& path) { desk.write(path); })}});
 }
 
 }  // namespace

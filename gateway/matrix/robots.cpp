@@ -187,21 +187,11 @@ void run(std::uint64_t first, std::uint64_t count) {
           site.set_rate(packets, values, limit);
           return "set";
         }},
-       {"values",
-        [&](std::istringstream& words) {
-          bool are_sent = false;
-          words >> are_sent;
-          site.set_values(are_sent);
-          return "set";
-        }},
+       {"values", with_value<bool>("set", [&](bool are_sent) { site.set_values(are_sent); })},
        {"progress", [&](auto&) { return site.list([](const Robot& one) { return one.sent(); }); }},
        {"newest", [&](auto&) { return site.list([](const Robot& one) { return one.newest(); }); }},
-       {"report", [&](std::istringstream& words) {
-          std::string path;
-          words >> path;
-          site.write(path);
-          return "written";
-        }}});
+       {"report",
+        with_value<std::string>("written", [&](const std::string& path) { site.write(path); })}});
 }
 
 }  // namespace

@@ -16,6 +16,14 @@
 
 namespace rr::gateway::testing {
 
+/// Whether a wire gets this value, within half a minute.
+inline bool value_comes(const dynamic::WireConnection& wire, double wanted) {
+  return comes_true([&] {
+    const auto value = wire.try_in();
+    return value && value->value.as<double>() == wanted;
+  });
+}
+
 /// A robot, both gateways over two carriers, and a client that knows of neither.
 class Rig {
  public:

@@ -63,8 +63,8 @@ struct RingSteps {
   /// The reader has copied out all up to `taken`. Returns bits of Room, by which the caller has to
   /// wake the writer.
   static std::uint32_t release(Words& words, std::uint64_t taken);
-  /// The writer, which has written up to `written`, wants to be told of room. True when there is
-  /// some already.
+  /// The writer, which has written up to `written`, asks for a notice when there is room. True when
+  /// there is some already.
   static bool want_room(Words& words, Room how, std::uint64_t written, std::uint64_t size);
 };
 

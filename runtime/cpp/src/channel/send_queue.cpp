@@ -202,7 +202,7 @@ SendQueue::Flushed SendQueue::flush() {
   const std::size_t before = unsent();
   const bool had_rest = has_unsent();
   send_waiting(result);
-  // A carrier may have told of room before anybody knew that it was wanted.
+  // The notice of room may have come before this knew that it needs some.
   if (result.has_rest && !had_rest && carrier_ != nullptr) send_waiting(result);
   note_waiting();
   settle();
