@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may do what: users, locks, monitors (07, section 6). Every entry of a session passes
 // check_access() before anything is done for it.
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 
 namespace rr::service {
 namespace {
+
+std::optional<LockRequest::Operation> kept_operation(std::string_view member) {
+  using Operation = LockRequest::Operation;
+  constexpr std::array<std::pair<std::string_view, Operation>, 6> names{
+      {{"RequestObjectLock", Operation::lock_for_user},
+       {"RequestClientObjectLock", Operation::lock_for_session},
+       {"ReleaseObjectLock", Operation::unlock},
+       {"MonitorEnter", Operation::enter_monitor},
+       {"MonitorContinueEnter", Operation::go_on_entering},
+       {"MonitorExit", Operation::exit_monitor}}};
+  for (const auto& [name, operation] : names) {
+    if (name == member) return operation;
+  }
+  return std::nullopt;
+}
 
 std::uint8_t access_of(const ServedObject& object, std::string_view member) {
   const auto place = object.members->find(member);
@@ -145,6 +163,7 @@ void ServerEndpoint::end_what_is_not_allowed(ServiceHost& host, bool is_all) {
 
 void ServerEndpoint::answer_session_operation(const Question& question) {
   const std::string_view operation = question.entry.member;
+  if (const auto keeper = host_->lock_keeper(); keeper && ask_keeper(*keeper, question)) return;
   if (operation.starts_with("Monitor")) {
     answer_monitor_operation(question);
     return;
@@ -160,6 +179,43 @@ void ServerEndpoint::answer_session_operation(const Question& question) {
   answer_user_operation(question);
   const std::string done = "OK";
   answer_value(question, "return", type_of<std::string>, &done);
+}
+
+// False for what no keeper answers.
+bool ServerEndpoint::ask_keeper(LockKeeper& keeper, const Question& question) {
+  const Entry& entry = question.entry;
+  const auto operation = kept_operation(entry.member);
+  if (!operation) return false;
+  LockRequest request{*operation, std::string(entry.service_path), client_.endpoint};
+  if (*operation == LockRequest::Operation::enter_monitor) {
+    Decoder decoder(question.message.version, &question.message.strings);
+    std::int32_t timeout = 0;
+    endpoint::read_value(decoder, entry, "timeout", type_of<std::int32_t>, &timeout);
+    request.timeout = std::chrono::milliseconds(timeout);
+  }
+  question.is_put_off = true;
+  keeper.keep(std::move(request), [self = shared_from_this(), late = late_operation(question)](
+                                      const std::exception_ptr& error, bool is_waiting) {
+    if (error) {
+      self->answer_late(late, endpoint::describe(error));
+    } else {
+      self->answer_late_text(late, is_waiting ? "Continue" : "OK");
+    }
+  });
+  return true;
+}
+
+LateAnswer ServerEndpoint::late_operation(const Question& question) {
+  const Entry& entry = question.entry;
+  return {entry.type,
+          std::string(entry.service_path),
+          std::string(entry.member),
+          entry.request_id,
+          nullptr,
+          question.batch,
+          question.place,
+          admission_of(question),
+          question.begun};
 }
 
 void ServerEndpoint::answer_user_operation(const Question& question) {
@@ -211,11 +267,8 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
     }
     return;
   }
-  auto reply = [self = shared_from_this(),
-                late = LateAnswer{entry.type, std::string(entry.service_path),
-                                  std::string(entry.member), entry.request_id, nullptr,
-                                  question.batch, question.place, admission_of(question),
-                                  question.begun}](Monitors::Outcome outcome, const Error* error) {
+  auto reply = [self = shared_from_this(), late = late_operation(question)](
+                   Monitors::Outcome outcome, const Error* error) {
     if (outcome == Monitors::Outcome::failed) {
       self->answer_late(late, *error);
     } else {

@@ -31,6 +31,10 @@
 #include "runtime/cpp/src/service/session_access.hpp"
 #include "runtime/cpp/src/service/wires.hpp"
 
+namespace rr {
+class LockKeeper;
+}
+
 namespace rr::service {
 
 class DecodedMemory;
@@ -214,6 +218,8 @@ class ServerEndpoint final : public channel::Receiver,
   void end_what_is_not_allowed(ServiceHost& host, bool is_all);
   std::shared_ptr<const User> need_user() const;
   void answer_session_operation(const Question& question);
+  bool ask_keeper(LockKeeper& keeper, const Question& question);
+  static LateAnswer late_operation(const Question& question);
   void answer_user_operation(const Question& question);
   void answer_monitor_operation(const Question& question);
 

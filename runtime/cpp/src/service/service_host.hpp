@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rr/lock_keeper.hpp"
 #include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -81,6 +82,9 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] AnswerSizes& answer_sizes() { return answer_sizes_; }
   [[nodiscard]] Locks& locks() { return locks_; }
   [[nodiscard]] Monitors& monitors() { return *monitors_; }
+  /// Who keeps locks and monitors in place of these two; null for nobody.
+  [[nodiscard]] std::shared_ptr<LockKeeper> lock_keeper() const;
+  void set_lock_keeper(std::shared_ptr<LockKeeper> keeper);
 
   /// False when the service has been closed.
   bool add_client(const std::shared_ptr<ServerEndpoint>& client);
@@ -125,6 +129,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   std::atomic<bool> is_started_{false};
   mutable Mutex mutex_;
   std::shared_ptr<const Clients> clients_ RR_GUARDED_BY(mutex_);  // replaced, never changed
+  std::shared_ptr<LockKeeper> lock_keeper_ RR_GUARDED_BY(mutex_);
   bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 };
 

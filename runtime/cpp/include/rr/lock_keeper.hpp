@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "rr/service.hpp"
+#include "rr/visibility.hpp"
+
+/// Locks of a service's objects that are kept elsewhere: for a service that stands for another one,
+/// as that of a gateway, whose own locks would not keep out the other one's clients.
+namespace RR_VISIBLE rr {
+
+/// What a client asks for (rr/locks.hpp).
+struct LockRequest {
+  /// Which of the operations of a session.
+  enum class Operation : std::uint8_t {
+    lock_for_user,     ///< LockOwner::user
+    lock_for_session,  ///< LockOwner::session
+    unlock,
+    enter_monitor,
+    go_on_entering,  ///< after an answer that it is to wait on
+    exit_monitor,
+  };
+  Operation operation = Operation::lock_for_user;
+  std::string path;          ///< of the object, as Stub::rr_path()
+  std::uint32_t client = 0;  ///< number of its endpoint in this node
+  /// Of enter_monitor: how long it waits for the monitor; negative: as long as it takes.
+  std::chrono::milliseconds timeout{0};
+};
+
+/// Answers requests for locks and monitors in place of the service.
+class LockKeeper {
+ public:
+  /// What has become of a request: an exception, which the client gets, or null for success.
+  /// `is_waiting` is for enter_monitor and go_on_entering: not yet, the client asks again. Exactly
+  /// once, on any thread.
+  using Answer = std::function<void(std::exception_ptr error, bool is_waiting)>;
+
+  virtual ~LockKeeper() = default;
+  /// Called on a thread of the node, which must not be blocked; what it throws is an answer, too.
+  /// A client that waits for a monitor expects an answer within 5 s.
+  virtual void keep(LockRequest request, Answer answer) = 0;
+};
+
+/// From now on the keeper is asked, whether the service has users or not. The service refuses
+/// nothing by itself because of locks and monitors. Before the first client has locked something.
+/// Throws rr::Error (invalid_operation) for a service that is none of this runtime.
+void keep_locks(const Service& service, std::shared_ptr<LockKeeper> keeper);
+
+}  // namespace rr
