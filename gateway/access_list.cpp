@@ -94,6 +94,9 @@ class Collector {
         rights.publish.insert(topic(verb, path + "/" + level_of(member)));
       }
     }
+    if ((rule.access & locking) != 0) rights.publish.insert(topic(Verb::lock, path));
+    // Locks and callbacks belong to sessions.
+    if ((rule.access & (locking | calling)) != 0) rights.publish.insert(topic(Verb::session, ""));
     for (const std::string& prefix : prefixes) rights.publish.insert(topic(Verb::object, prefix));
     rights.receive.insert({node_topic(address.site, address.node) + "/$life", service + "/$life",
                            service + "/$streams", service + "/$def/#", reply_topic(user, "#")});

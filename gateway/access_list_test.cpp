@@ -53,17 +53,27 @@ TEST(GatewayAccessList, HasWhatSingleUsersMay) {
   EXPECT_TRUE(list.everybody.publish.empty());
   EXPECT_TRUE(list.everybody.receive.empty());
   const AccessRights& alice = list.users.at("alice");
-  EXPECT_THAT(alice.publish, ElementsAre("rr/hall/r1/arm/$call/alice/+/axis[2]/+",
-                                         "rr/hall/r1/arm/$next/alice/+/axis[2]/+",
-                                         "rr/hall/r1/arm/$object/alice/+",
-                                         "rr/hall/r1/arm/$object/alice/+/axis[2]",
-                                         "rr/hall/r1/arm/$poke/alice/+/axis[2]/+",
-                                         "rr/hall/r1/arm/$send/alice/+/axis[2]/+",
-                                         "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
+  EXPECT_THAT(
+      alice.publish,
+      ElementsAre(
+          "rr/hall/r1/arm/$call/alice/+/axis[2]/+", "rr/hall/r1/arm/$next/alice/+/axis[2]/+",
+          "rr/hall/r1/arm/$object/alice/+", "rr/hall/r1/arm/$object/alice/+/axis[2]",
+          "rr/hall/r1/arm/$poke/alice/+/axis[2]/+", "rr/hall/r1/arm/$send/alice/+/axis[2]/+",
+          "rr/hall/r1/arm/$session/alice", "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
   EXPECT_THAT(alice.receive,
               ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
                           "rr/hall/r1/arm/$life", "rr/hall/r1/arm/$streams"));
   EXPECT_THAT(list.users.at("robot1").publish, ElementsAre("rr/$reply/alice/#", "rr/hall/r1/#"));
+}
+
+TEST(GatewayAccessList, HasLocksOfObjects) {
+  const AccessList list =
+      access_list({file_of("r1", "robot1", rule("", "\"*\"", "\"lock\"")),
+                   file_of("r2", "robot2", rule("tools[*]", "\"*\"", "\"lock\""))});
+  EXPECT_THAT(list.everybody.publish,
+              ElementsAre("rr/hall/r1/arm/$lock/%u", "rr/hall/r1/arm/$session/%u",
+                          "rr/hall/r2/arm/$lock/%u/+", "rr/hall/r2/arm/$object/%u/+",
+                          "rr/hall/r2/arm/$session/%u"));
 }
 
 TEST(GatewayAccessList, PathsAreAsTopicsHaveThem) {
@@ -80,6 +90,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "user alice\n"
             "topic write rr/hall/r1/arm/$call/alice/move\n"
             "topic write rr/hall/r1/arm/$next/alice/move\n"
+            "topic write rr/hall/r1/arm/$session/alice\n"
             "topic read rr/$reply/alice/#\n"
             "topic read rr/hall/r1/$life\n"
             "topic read rr/hall/r1/arm/$def/#\n"
@@ -94,10 +105,12 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r1/arm/$call/#\n"
             "topic read rr/hall/r1/arm/$confirm/#\n"
             "topic read rr/hall/r1/arm/$get/#\n"
+            "topic read rr/hall/r1/arm/$lock/#\n"
             "topic read rr/hall/r1/arm/$next/#\n"
             "topic read rr/hall/r1/arm/$object/#\n"
             "topic read rr/hall/r1/arm/$poke/#\n"
             "topic read rr/hall/r1/arm/$send/#\n"
+            "topic read rr/hall/r1/arm/$session/#\n"
             "topic read rr/hall/r1/arm/$set/#\n"
             "topic read rr/hall/r1/arm/$stream/#\n"
             "\n"
@@ -109,10 +122,12 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r2/arm/$call/#\n"
             "topic read rr/hall/r2/arm/$confirm/#\n"
             "topic read rr/hall/r2/arm/$get/#\n"
+            "topic read rr/hall/r2/arm/$lock/#\n"
             "topic read rr/hall/r2/arm/$next/#\n"
             "topic read rr/hall/r2/arm/$object/#\n"
             "topic read rr/hall/r2/arm/$poke/#\n"
             "topic read rr/hall/r2/arm/$send/#\n"
+            "topic read rr/hall/r2/arm/$session/#\n"
             "topic read rr/hall/r2/arm/$set/#\n"
             "topic read rr/hall/r2/arm/$stream/#\n"
             "\n"

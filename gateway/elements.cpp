@@ -7,12 +7,35 @@
 #include "rr/codec.hpp"
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
+#include "rr/type_of.hpp"
+#include "rr/varvalue.hpp"
 
 namespace rr::gateway {
 namespace {
 
 [[noreturn]] void throw_failure(const Decoder& decoder) {
   throw Error(decoder.code(), decoder.message());
+}
+
+// Parameters of errors are of no named types: whoever gets them needs no definition.
+Bytes parameter_element(const VarValue& parameter) {
+  if (parameter.is_null()) return {};
+  Writer writer;
+  writer.reset(MessageVersion::v4);
+  type_of<VarValue>.write(writer, "errorparam", &parameter);
+  return writer.failed() ? Bytes() : writer.copy();
+}
+
+// Null for bytes that are none.
+VarValue parameter_of(const Bytes& bytes) {
+  VarValue parameter;
+  if (bytes.empty()) return parameter;
+  Decoder decoder(MessageVersion::v4);
+  if (!check_elements(decoder, bytes, 1, Limits())) return {};
+  ElementReader reader(decoder, bytes, 1);
+  Element element;
+  if (!reader.next(element) || !type_of<VarValue>.read(decoder, element, &parameter)) return {};
+  return parameter;
 }
 
 }  // namespace
@@ -92,6 +115,7 @@ void set_error(Message& answer, const std::exception_ptr& error, std::string_vie
     answer.properties.emplace_back("error-message", found.message());
     answer.properties.emplace_back("error-subname", found.subname());
     answer.properties.emplace_back("error-at", at);
+    answer.payload = parameter_element(found.parameter());
   };
   try {
     std::rethrow_exception(error);
@@ -110,7 +134,7 @@ std::exception_ptr error_of(const Message& answer) {
   };
   return std::make_exception_ptr(Error(static_cast<ErrorCode>(static_cast<std::uint16_t>(*code)),
                                        text("error-name"), text("error-message"),
-                                       text("error-subname")));
+                                       text("error-subname"), parameter_of(answer.payload)));
 }
 
 }  // namespace rr::gateway

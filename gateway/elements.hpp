@@ -35,7 +35,7 @@ std::string type_text(const std::vector<dynamic::ParameterDescription>& paramete
 std::exception_ptr error_pointer(ErrorCode code, std::string text);
 /// Puts an error into the properties of an answer: `error` (its code), `error-name`,
 /// `error-message`, `error-subname`, and `error-at`, the place where it happened: `robot`,
-/// `gateway`.
+/// `gateway`, `client`. The parameter of an error is the payload.
 void set_error(Message& answer, const std::exception_ptr& error, std::string_view at);
 /// The error of an answer; null for none.
 std::exception_ptr error_of(const Message& answer);

@@ -84,7 +84,27 @@ TEST_F(GatewayElements, ErrorsKeepWhatTheySay) {
     EXPECT_EQ(error.name(), "a.B");
     EXPECT_EQ(error.message(), "text");
     EXPECT_EQ(error.subname(), "sub");
+    EXPECT_TRUE(error.parameter().is_null());
   }
+}
+
+TEST_F(GatewayElements, ErrorsKeepTheirParameter) {
+  Message answer;
+  set_error(answer,
+            std::make_exception_ptr(Error(ErrorCode::remote_error, "a.B", "text", "sub",
+                                          VarValue(Array<double>{0.5, -0.25}))),
+            "robot");
+  const auto parameter = [&] {
+    try {
+      std::rethrow_exception(error_of(answer));
+    } catch (const Error& error) {
+      return error.parameter();
+    }
+  };
+  EXPECT_EQ(parameter(), VarValue(Array<double>{0.5, -0.25}));
+  // What is no element is no parameter.
+  answer.payload.resize(answer.payload.size() - 1);
+  EXPECT_TRUE(parameter().is_null());
 }
 
 }  // namespace

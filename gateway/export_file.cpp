@@ -172,8 +172,9 @@ class FileReader {
       const std::uint8_t one = word.first == "read"    ? reading
                                : word.first == "write" ? writing
                                : word.first == "call"  ? calling
+                               : word.first == "lock"  ? locking
                                                        : 0;
-      if (one == 0) mistake(word.second, "access is `read`, `write` or `call`");
+      if (one == 0) mistake(word.second, "access is `read`, `write`, `call` or `lock`");
       all |= one;
     }
     return all;
@@ -284,6 +285,9 @@ class FileReader {
     } else if (entry.key == "log_age") {
       service.log_age =
           std::chrono::seconds(static_cast<std::int64_t>(amount(entry.value, times, "7 days")));
+    } else if (entry.key == "session_limit") {
+      service.session_limit =
+          std::chrono::seconds(static_cast<std::int64_t>(amount(entry.value, times, "30 s")));
     } else if (entry.key == "allow") {
       service.rules = list(entry.value, [this](const Toml& item) { return read_rule(item); });
     } else if (entry.key == "user") {

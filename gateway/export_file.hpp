@@ -19,7 +19,8 @@ namespace rr::gateway {
 enum Allowed : std::uint8_t {
   reading = 1,  ///< properties, values of wires, packets of pipes, events, memories
   writing = 2,  ///< properties, values for wires, memories
-  calling = 4,  ///< functions
+  calling = 4,  ///< functions and callbacks
+  locking = 8,  ///< locks and monitors of the objects, whatever the members
 };
 
 /// An entry of the allow list: `[[service.allow]]`.
@@ -48,6 +49,8 @@ struct ExportedServiceOptions {
   std::vector<std::string> readers;  ///< streams are kept until these have confirmed
   std::uint64_t log_bytes = std::uint64_t{256} * 1024 * 1024;  ///< of each stream
   std::chrono::seconds log_age = std::chrono::hours(24 * 7);   ///< of the oldest record
+  /// A far client's own session at the robot ends when its gateway has said nothing for so long.
+  std::chrono::seconds session_limit{30};
   std::vector<ExportRule> rules;
   std::map<std::string, MappedUser> users;  ///< by the broker's user; for the others: login
 };
@@ -77,10 +80,14 @@ bool fits(std::string_view pattern, std::string_view text);
 /// The same for paths of objects, where `*` stands for letters of one step: `tools[*]` is no object
 /// below a tool.
 bool path_fits(std::string_view pattern, std::string_view path);
-/// The first rule that allows it; null when none does. `user` is empty for what is published to
+/// The first rule that allows it; null when none does. For `locking` the member does not matter.
+/// `user` is empty for what is published to
 /// all: then rules for single users do not count.
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,
                             std::string_view path, std::string_view member, Allowed access);
+
+/// Whether any rule is for a user of the broker.
+bool is_user(const ExportedServiceOptions& service, std::string_view user);
 
 /// The content of a file without the line break at its end. Throws rr::Error (resource_not_found).
 std::string read_secret(const std::string& path);

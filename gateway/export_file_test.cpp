@@ -28,7 +28,7 @@ url = "rr+tcp://localhost:6257/?service=arm"
 readers = ["hub"]
 log_size = "64 MiB"
 log_age = "2 days"
-
+session_limit = "90 s"
 [[service.allow]]
 members = ["pose", "force*"]
 access = ["read"]
@@ -38,7 +38,7 @@ lifespan = "5 s"
 [[service.allow]]
 path = "tools[*]"
 members = ["*"]
-access = ["read", "write", "call"]
+access = ["read", "write", "call", "lock"]
 users = ["alice"]
 
 [[service.user]]
@@ -73,12 +73,13 @@ TEST(GatewayExportFile, IsRead) {
   ASSERT_EQ(file.services.size(), 1U);
   const ExportedServiceOptions& arm = file.services[0];
   EXPECT_EQ(arm.readers, std::vector<std::string>{"hub"});
+  EXPECT_EQ(arm.session_limit, std::chrono::seconds(90));
   EXPECT_EQ(arm.log_bytes, 64U * 1024 * 1024);
   EXPECT_EQ(arm.log_age, std::chrono::hours(48));
   ASSERT_EQ(arm.rules.size(), 2U);
   EXPECT_EQ(arm.rules[0].period, std::chrono::milliseconds(50));
   EXPECT_EQ(arm.rules[0].lifespan, std::chrono::seconds(5));
-  EXPECT_EQ(arm.rules[1].access, reading | writing | calling);
+  EXPECT_EQ(arm.rules[1].access, reading | writing | calling | locking);
   EXPECT_EQ(arm.users.at("alice").name, "operator");
 }
 
@@ -89,7 +90,7 @@ TEST(GatewayExportFile, MistakesHaveTheirPlaces) {
             "x.toml:16:1: `raeders` is no key of [[service]]");
   EXPECT_EQ(mistakes(changed("\"20/s\"", "\"20\"")), "x.toml:23:8: not such as `20/s`");
   EXPECT_EQ(mistakes(changed("[\"read\"]", "[\"read\", \"raed\"]")),
-            "x.toml:22:19: access is `read`, `write` or `call`");
+            "x.toml:22:19: access is `read`, `write`, `call` or `lock`");
   EXPECT_EQ(mistakes(changed("tools[*]", "tools[")),
             "x.toml:27:8: `tools[` is no path of an object");
   EXPECT_EQ(mistakes(changed("log_size = \"64 MiB\"", "log_size = 64")),

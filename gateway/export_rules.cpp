@@ -6,11 +6,16 @@
 namespace rr::gateway {
 namespace {
 
+bool is_for(const ExportRule& rule, std::string_view user) {
+  return rule.users.empty() || std::ranges::find(rule.users, user) != rule.users.end();
+}
+
 bool allows(const ExportRule& rule, std::string_view user, std::string_view path,
             std::string_view member, Allowed access) {
-  if ((rule.access & access) == 0) return false;
-  if (!rule.users.empty() && std::ranges::find(rule.users, user) == rule.users.end()) return false;
-  return path_fits(rule.path, path) && std::ranges::any_of(rule.members, [&](const auto& pattern) {
+  if ((rule.access & access) == 0 || !is_for(rule, user) || !path_fits(rule.path, path)) {
+    return false;
+  }
+  return access == locking || std::ranges::any_of(rule.members, [&](const auto& pattern) {
            return fits(pattern, member);
          });
 }
@@ -50,6 +55,10 @@ bool path_fits(std::string_view pattern, std::string_view path) {
     pattern.remove_prefix(wanted + 1);
     path.remove_prefix(step + 1);
   }
+}
+
+bool is_user(const ExportedServiceOptions& service, std::string_view user) {
+  return std::ranges::any_of(service.rules, [&](const auto& rule) { return is_for(rule, user); });
 }
 
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,

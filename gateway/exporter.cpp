@@ -43,7 +43,10 @@ ServiceExporter::ServiceExporter(ServiceAddress address, ExportedServiceOptions 
       options_(std::move(options)),
       folder_(std::move(folder)),
       shared_(std::move(shared)),
-      window_(folder_ + "/$calls", {}, wall_time()) {}
+      window_(folder_ + "/$calls", {}, wall_time()),
+      callbacks_(std::make_shared<ExportedCallbacks>(shared_.worker, shared_.outbox,
+                                                     ExportedCallbacks::Limits(), shared_.pump)),
+      sessions_(shared_.worker, {.silence = options_.session_limit}) {}
 
 void ServiceExporter::connect(Node& node) {
   node_ = &node;
@@ -109,6 +112,8 @@ void ServiceExporter::clock_was_set(std::int64_t by) {
 void ServiceExporter::tick() {
   const auto now = std::chrono::steady_clock::now();
   window_.forget_old(wall_time());
+  callbacks_->tick(now);
+  sessions_.tick(now);
   generators_.end_idle(now, left_idle);
   endpoints_.close_idle(now, left_idle);
   for (auto& [topic, stream] : streams_) {

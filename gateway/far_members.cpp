@@ -46,6 +46,7 @@ std::optional<std::string> index_text(const Value& index) {
 
 dynamic::ServedObject FarService::make_object(const std::string& path, const std::string& type) {
   dynamic::ServedObject object(*definitions_, type);
+  objects_[path] = object;
   for (const dynamic::MemberDescription& member : object.members()) {
     switch (member.kind) {
       case MemberKind::property:
@@ -69,7 +70,7 @@ dynamic::ServedObject FarService::make_object(const std::string& path, const std
       case MemberKind::memory:
         serve_memory(object, path, member);
         break;
-      // Not implemented for clients, as any member without a function.
+      // Called by the robot: far_callbacks.cpp.
       case MemberKind::callback:
         break;
     }
@@ -79,20 +80,22 @@ dynamic::ServedObject FarService::make_object(const std::string& path, const std
 
 void FarService::serve_property(const dynamic::ServedObject& object, const std::string& path,
                                 const dynamic::MemberDescription& member) {
-  const auto calls = shared_.calls;
+  const auto sessions = sessions_;
   if ((member.access & writeonly) == 0) {
     object.on_get_later(
-        member.name, [calls, address = address_, path, name = member.name, type = member.type,
+        member.name, [sessions, address = address_, path, name = member.name, type = member.type,
                       definitions = *definitions_](const Reply& reply) {
-          calls->request({address, Verb::get, path, name}, reply_with(definitions, type, reply));
+          sessions->request(ServiceContext::current_client(), {address, Verb::get, path, name},
+                            reply_with(definitions, type, reply));
         });
   }
   if ((member.access & readonly) != 0) return;
   object.on_set_later(
-      member.name, [calls, address = address_, path, name = member.name, type = member.type,
+      member.name, [sessions, address = address_, path, name = member.name, type = member.type,
                     definitions = *definitions_](const Value& value, const Reply& reply) {
-        calls->request({address, Verb::set, path, name, encode_element(type, value)},
-                       reply_with(definitions, {}, reply));
+        sessions->request(ServiceContext::current_client(),
+                          {address, Verb::set, path, name, encode_element(type, value)},
+                          reply_with(definitions, {}, reply));
       });
 }
 
@@ -102,10 +105,11 @@ void FarService::serve_function(const dynamic::ServedObject& object, const std::
     serve_generator(object, path, member);
     return;
   }
-  object.on_call_later(member.name, [calls = shared_.calls, address = address_, path, member,
+  object.on_call_later(member.name, [sessions = sessions_, address = address_, path, member,
                                      definitions = *definitions_](const dynamic::List& arguments,
                                                                   const Reply& reply) {
-    calls->request(
+    sessions->request(
+        ServiceContext::current_client(),
         {address, Verb::call, path, member.name, encode_arguments(member.parameters, arguments)},
         reply_with(definitions, member.type, reply));
   });
@@ -114,27 +118,30 @@ void FarService::serve_function(const dynamic::ServedObject& object, const std::
 // Opening it and each step wait for the robot on a thread of the node.
 void FarService::serve_generator(const dynamic::ServedObject& object, const std::string& path,
                                  const dynamic::MemberDescription& member) {
-  object.on_generate(member.name, [calls = shared_.calls, address = address_, path, member,
+  object.on_generate(member.name, [sessions = sessions_, address = address_, path, member,
                                    definitions = *definitions_](const dynamic::List& arguments) {
-    const Message opened = calls->wait(
-        {address, Verb::call, path, member.name, encode_arguments(member.parameters, arguments)});
+    const std::uint32_t client = ServiceContext::current_client();
+    const Message opened = sessions->wait(client, {address, Verb::call, path, member.name,
+                                                   encode_arguments(member.parameters, arguments)});
     FarRequest next{address, Verb::next, path, member.name};
     next.properties = {{"generator", std::string(opened.find("generator").value_or(""))}};
     return dynamic::Steps(
-        [calls, next, member, definitions](const Value& parameter) -> std::optional<Value> {
+        [sessions, client, next, member,
+         definitions](const Value& parameter) -> std::optional<Value> {
           FarRequest step = next;
           step.payload = encode_element(member.generator_parameter, parameter);
           try {
-            const Message answer = calls->wait(std::move(step));
+            const Message answer = sessions->wait(client, std::move(step));
             if (answer.find("end")) return std::nullopt;
             return decode_element(definitions, member.type, answer.payload);
           } catch (...) {
             // It has ended here, perhaps without the robot's notice.
-            calls->request(end_of(next, true), [](const std::exception_ptr&, const Message&) {});
+            sessions->request(client, end_of(next, true),
+                              [](const std::exception_ptr&, const Message&) {});
             throw;
           }
         },
-        [calls, next](bool aborts) { calls->wait(end_of(next, aborts)); });
+        [sessions, client, next](bool aborts) { sessions->wait(client, end_of(next, aborts)); });
   });
 }
 
@@ -147,27 +154,27 @@ void FarService::serve_memory(const dynamic::ServedObject& object, const std::st
     return Properties{{"position", list_text(position)}, {"count", list_text(count)}};
   };
   dynamic::MemoryFunctions functions;
-  functions.dims = [calls = shared_.calls, get] {
-    const auto dims = numbers_property(calls->wait(get), "dims");
+  functions.dims = [sessions = sessions_, get] {
+    const auto dims = numbers_property(sessions->wait(get), "dims");
     if (dims) return *dims;
     throw Error(ErrorCode::internal_error, "the robot's gateway does not say the dimensions");
   };
   if ((member.access & writeonly) == 0) {
-    functions.read = [calls = shared_.calls, get, part, type = member.type,
+    functions.read = [sessions = sessions_, get, part, type = member.type,
                       definitions = *definitions_](const Numbers& position, const Numbers& count) {
       FarRequest request = get;
       request.properties = part(position, count);
-      return decode_element(definitions, type, calls->wait(std::move(request)).payload);
+      return decode_element(definitions, type, sessions->wait(std::move(request)).payload);
     };
   }
   if ((member.access & readonly) == 0) {
-    functions.write = [calls = shared_.calls, get, type = member.type](const Numbers& position,
-                                                                       const Value& items) {
+    functions.write = [sessions = sessions_, get, type = member.type](const Numbers& position,
+                                                                      const Value& items) {
       FarRequest request = get;
       request.verb = Verb::set;
       request.properties = {{"position", list_text(position)}};
       request.payload = encode_element(type, items);
-      calls->wait(std::move(request));
+      sessions->wait(std::move(request));
     };
   }
   object.serve_memory(member.name, std::move(functions));
@@ -179,10 +186,10 @@ void FarService::serve_objref(const dynamic::ServedObject& object, const std::st
                               const dynamic::MemberDescription& member) {
   object.on_object(
       member.name,
-      [weak = Weak(shared_from_this()), calls = shared_.calls, address = address_, path,
+      [weak = Weak(shared_from_this()), sessions = sessions_, address = address_, path,
        name = member.name](const Value& index) -> std::shared_ptr<Skeleton> {
         const std::string below = path_below(path, {name, index_text(index)});
-        const Message answer = calls->wait({address, Verb::object, below, ""});
+        const Message answer = sessions->wait({address, Verb::object, below, ""});
         const Self self = weak.lock();
         if (!self) return nullptr;
         // Streams and wires of the object belong to the worker's thread.
@@ -201,14 +208,33 @@ void FarService::serve_objref(const dynamic::ServedObject& object, const std::st
       });
 }
 
+// Peeks ask the robot, which may have another value than the newest that was sent.
+void FarService::serve_peeks(const dynamic::ServedObject& object, const std::string& path,
+                             const dynamic::MemberDescription& member) {
+  const auto peek = [sessions = sessions_,
+                     request = FarRequest{address_, Verb::get, path, member.name},
+                     type = member.type, definitions = *definitions_](const char* side) {
+    FarRequest wanted = request;
+    wanted.properties = {{"peek", side}};
+    return decode_element(definitions, type, sessions->wait(std::move(wanted)).payload);
+  };
+  if ((member.access & writeonly) == 0) {
+    object.wire(member.name).on_peek_in([peek] { return peek("in"); });
+  }
+  if ((member.access & readonly) == 0) {
+    object.wire(member.name).on_peek_out([peek] { return peek("out"); });
+  }
+}
+
 void FarService::serve_wire(const dynamic::ServedObject& object, const std::string& path,
                             const dynamic::MemberDescription& member) {
+  serve_peeks(object, path, member);
   if ((member.access & readonly) == 0) {
     object.wire(member.name)
-        .on_out([calls = shared_.calls, address = address_, path, name = member.name,
-                 type = member.type](const Value& value, const TimeSpec&, std::uint32_t) {
-          calls->request({address, Verb::poke, path, name, encode_element(type, value)},
-                         [](const std::exception_ptr&, const Message&) {});
+        .on_out([sessions = sessions_, address = address_, path, name = member.name,
+                 type = member.type](const Value& value, const TimeSpec&, std::uint32_t client) {
+          sessions->request(client, {address, Verb::poke, path, name, encode_element(type, value)},
+                            [](const std::exception_ptr&, const Message&) {});
         });
   }
   if ((member.access & writeonly) != 0) return;
@@ -264,10 +290,10 @@ void FarService::take_packets(const dynamic::PipeServer& pipe, const std::string
                               const dynamic::MemberDescription& member) {
   if ((member.access & readonly) != 0) return;
   const FarRequest request{address_, Verb::send, path, member.name};
-  pipe.on_connect([calls = shared_.calls, log = shared_.log, topic = topic_, request,
+  pipe.on_connect([sessions = sessions_, log = shared_.log, topic = topic_, request,
                    type = member.type](dynamic::PipeEndpoint end) {
     const auto packets = std::make_shared<FarPackets>(
-        calls, request, type, FarPackets::Limits(),
+        sessions, ServiceContext::current_client(), request, type, FarPackets::Limits(),
         [log, topic, end, name = request.member](const std::string& reason) mutable {
           log(LogLevel::warning, topic + ": packets for `" + name + "` are lost: " + reason);
           end.close();

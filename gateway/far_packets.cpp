@@ -9,9 +9,10 @@
 
 namespace rr::gateway {
 
-FarPackets::FarPackets(std::shared_ptr<FarCalls> calls, FarRequest pipe, dynamic::ValueType type,
-                       const Limits& limits, Failed failed)
-    : calls_(std::move(calls)),
+FarPackets::FarPackets(std::shared_ptr<FarSessions> sessions, std::uint32_t client, FarRequest pipe,
+                       dynamic::ValueType type, const Limits& limits, Failed failed)
+    : sessions_(std::move(sessions)),
+      client_(client),
       pipe_([&] {
         pipe.verb = Verb::send;
         pipe.properties = {{"endpoint", random_hex()}};
@@ -75,10 +76,10 @@ void FarPackets::send_next() {
     if (has_failed_) return;
     request = next_request();
   }
-  calls_->request(std::move(request),
-                  [self = shared_from_this()](const std::exception_ptr& error, const Message&) {
-                    self->take_answer(error);
-                  });
+  sessions_->request(client_, std::move(request),
+                     [self = shared_from_this()](const std::exception_ptr& error, const Message&) {
+                       self->take_answer(error);
+                     });
 }
 
 void FarPackets::take_answer(const std::exception_ptr& error) {

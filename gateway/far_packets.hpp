@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <string>
 
-#include "gateway/far_calls.hpp"
+#include "gateway/far_sessions.hpp"
 #include "rr/dynamic.hpp"
 #include "rr/mutex.hpp"
 
@@ -25,9 +26,9 @@ class FarPackets : public std::enable_shared_from_this<FarPackets> {
   /// Called once when packets are lost, with the reason. The endpoint is of no use any more then.
   using Failed = Function<void(const std::string&)>;
 
-  /// `pipe` is a request for the pipe, whose verb does not matter.
-  FarPackets(std::shared_ptr<FarCalls> calls, FarRequest pipe, dynamic::ValueType type,
-             const Limits& limits, Failed failed);
+  /// `pipe` is a request of the client for the pipe, whose verb does not matter.
+  FarPackets(std::shared_ptr<FarSessions> sessions, std::uint32_t client, FarRequest pipe,
+             dynamic::ValueType type, const Limits& limits, Failed failed);
 
   /// The next packet.
   void add(const dynamic::Value& packet);
@@ -40,7 +41,8 @@ class FarPackets : public std::enable_shared_from_this<FarPackets> {
   void fail(const std::string& reason);
   FarRequest next_request() RR_REQUIRES(mutex_);
 
-  const std::shared_ptr<FarCalls> calls_;
+  const std::shared_ptr<FarSessions> sessions_;
+  const std::uint32_t client_;
   const FarRequest pipe_;
   const dynamic::ValueType type_;
   const Limits limits_;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "gateway/far_locks.hpp"
 #include "gateway/properties.hpp"
 #include "rr/error.hpp"
 
@@ -28,6 +29,11 @@ FarService::FarService(ServiceAddress address, std::string name, Shared shared)
       shared_(std::move(shared)) {}
 
 void FarService::start() {
+  sessions_ = std::make_shared<FarSessions>(
+      shared_.calls, address_, FarSessions::Limits{.alive = shared_.session_alive},
+      [weak = Weak(shared_from_this())](std::uint32_t client, const std::string& reason) {
+        if (const Self self = weak.lock()) self->drop(client, reason);
+      });
   shared_.carrier.subscribe(topic_ + "/$def/#");
   shared_.carrier.subscribe(topic_ + "/$life");
   shared_.carrier.subscribe(node_topic(address_.site, address_.node) + "/$life");
@@ -38,6 +44,7 @@ void FarService::close() {
   service_.reset();
   streams_.clear();
   wires_.clear();
+  objects_.clear();
   root_ = {};
 }
 
@@ -56,8 +63,12 @@ bool FarService::take(const Message& message) {
     take_wire(wire->second, message);
     return true;
   }
+  const auto callback = message.find("callback");
+  if (callback && message.topic == shared_.reader.reply_topic) {
+    return take_callback(message, *callback);
+  }
   if (message.topic == topic_ + "/$life") {
-    robot_life_ = text_of(message.payload);
+    take_life(message);
   } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
     const std::string before = std::exchange(gateway_life_, text_of(message.payload));
     // Requests that it did not get are not waited for.
@@ -67,6 +78,14 @@ bool FarService::take(const Message& message) {
   }
   // Several services may belong to one robot.
   return false;
+}
+
+void FarService::take_life(const Message& message) {
+  const std::string before = std::exchange(robot_life_, text_of(message.payload));
+  if (robot_life_ == before) return;
+  const auto reason = message.find("reason");
+  shared_.log(reason ? LogLevel::warning : LogLevel::info,
+              topic_ + " is " + robot_life_ + (reason ? ": " + std::string(*reason) : ""));
 }
 
 void FarService::take_definition(const Message& message, std::string_view rest) {
@@ -104,11 +123,30 @@ void FarService::offer_when_complete() {
 
 void FarService::offer(const std::vector<std::string>& texts) {
   definitions_.emplace(texts);
+  if (has_callbacks()) sessions_->require();
   const auto type = definition_->find("object");
   root_ = make_object("", std::string(type.value_or("")));
-  service_ = dynamic::register_service(shared_.node, name_, root_);
+  service_ = dynamic::register_service(shared_.node, name_, root_, service_options());
+  keep_locks(*service_, std::make_shared<FarLocks>(sessions_, address_));
   shared_.log(LogLevel::info, topic_ + " is offered as `" + name_ + "`");
   shared_.pump();
+}
+
+ServiceOptions FarService::service_options() const {
+  ServiceOptions options;
+  options.on_client_connected = [sessions = sessions_](const ServiceClient& client) {
+    sessions->begin(client.endpoint);
+  };
+  options.on_client_leaving = [sessions = sessions_](const ServiceClient& client) {
+    sessions->end(client.endpoint);
+  };
+  return options;
+}
+
+// Its locks are gone: it must not go on as if it had them.
+void FarService::drop(std::uint32_t client, const std::string& reason) {
+  shared_.log(LogLevel::warning, topic_ + ": a client is disconnected: " + reason);
+  if (service_) (*service_)->disconnect(client);
 }
 
 void FarService::reconnected() {
@@ -117,6 +155,7 @@ void FarService::reconnected() {
 
 void FarService::tick() {
   for (const auto& [topic, stream] : streams_) stream->tick(shared_.outbox);
+  sessions_->tick(FarSessions::Clock::now());
 }
 
 std::string FarService::trouble() const {

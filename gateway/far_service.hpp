@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "gateway/exporter.hpp"
 #include "gateway/far_calls.hpp"
 #include "gateway/far_packets.hpp"
+#include "gateway/far_sessions.hpp"
 #include "gateway/far_stream.hpp"
 #include "rr/dynamic_service.hpp"
 
@@ -29,6 +32,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
     FarStream::Reader reader;
     Log log;
     Function<void()> pump;
+    std::chrono::milliseconds session_alive;  ///< as ServerOptions has it
   };
 
   /// `name` is that of the service here.
@@ -36,6 +40,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
 
   /// Subscribes to what tells of the service.
   void start();
+  /// The sessions of clients at the robot end; the service stays.
+  void end_sessions() { sessions_->end_all(); }
   /// Ends the service here.
   void close();
   /// A message that is no answer to a request. False when it is none of this service.
@@ -59,9 +65,12 @@ class FarService : public std::enable_shared_from_this<FarService> {
     std::uint64_t number = 0;
   };
 
+  void take_life(const Message& message);
   void take_definition(const Message& message, std::string_view rest);
   void offer_when_complete();
   void offer(const std::vector<std::string>& texts);
+  [[nodiscard]] ServiceOptions service_options() const;
+  void drop(std::uint32_t client, const std::string& reason);
   // far_members.cpp
   dynamic::ServedObject make_object(const std::string& path, const std::string& type);
   void serve_property(const dynamic::ServedObject& object, const std::string& path,
@@ -74,6 +83,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
                     const dynamic::MemberDescription& member);
   void serve_objref(const dynamic::ServedObject& object, const std::string& path,
                     const dynamic::MemberDescription& member);
+  void serve_peeks(const dynamic::ServedObject& object, const std::string& path,
+                   const dynamic::MemberDescription& member);
   void serve_wire(const dynamic::ServedObject& object, const std::string& path,
                   const dynamic::MemberDescription& member);
   void serve_pipe(const dynamic::ServedObject& object, const std::string& path,
@@ -82,6 +93,10 @@ class FarService : public std::enable_shared_from_this<FarService> {
                     const dynamic::MemberDescription& member);
   void serve_event(const dynamic::ServedObject& object, const std::string& path,
                    const dynamic::MemberDescription& member);
+  // far_callbacks.cpp
+  [[nodiscard]] bool has_callbacks() const;
+  bool take_callback(const Message& message, std::string_view id);
+  void call_back(const Message& message, std::uint32_t client, const FarCalls::Done& done);
   void add_stream(const std::string& path, const std::string& member, StreamReader::Sink sink,
                   Function<bool()> has_room);
   void take_wire(FarWire& wire, const Message& message);
@@ -91,6 +106,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
   const std::string name_;
   const std::string topic_;
   Shared shared_;
+  std::shared_ptr<FarSessions> sessions_;     // from start() on
   std::optional<Message> definition_;         // `$def` itself
   std::map<std::string, std::string> texts_;  // of definitions, by name
   std::string offered_;                       // the texts that the service was made of
@@ -101,6 +117,9 @@ class FarService : public std::enable_shared_from_this<FarService> {
   std::string gateway_life_;
   std::map<std::string, std::unique_ptr<FarStream>> streams_;  // by topic
   std::map<std::string, FarWire> wires_;                       // by topic
+  std::map<std::string, dynamic::WeakServedObject> objects_;   // by path
+  std::set<std::string> called_;                               // callbacks, by id
+  std::deque<std::string> called_order_;                       // oldest first
 };
 
 }  // namespace rr::gateway

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "gateway/properties.hpp"
 #include "gateway/testing/listener.hpp"
 #include "gateway/testing/memory_broker.hpp"
 #include "gateway/testing/rig.hpp"
@@ -91,6 +92,51 @@ TEST_F(Gateways, EventsArrive) {
   EXPECT_EQ(got.items()[0], "end4");
 }
 
+/// Looks at the robot in the moment in which its service is announced.
+struct LifeReader final : CarrierHandler {
+  explicit LifeReader(Function<void()> when_up) : on_up(std::move(when_up)) {}
+  void on_message(Message message) override {
+    if (text_of(message.payload) == "up") on_up();
+  }
+  void on_connected() override {}
+  void on_disconnected(const std::string&) override {}
+  void on_room() override {}
+  void on_refused(const Refusal&) override {}
+  Function<void()> on_up;
+};
+
+TEST_F(Gateways, AServiceIsUpWhenItsStreamsAreConnected) {
+  rig.stop_export();
+  ASSERT_TRUE(comes_true([&] { return rig.robot.bench().pipe("samples").endpoint_count() == 0; }));
+  broker.crash();  // an announcement that is retained is an old one
+  broker.restart();
+  Kept<std::size_t> connected;
+  LifeReader reader([&] {
+    connected.add(rig.robot.bench().pipe("samples").endpoint_count() +
+                  rig.robot.bench().wire("force").connection_count());
+  });
+  const auto carrier = broker.carrier();
+  carrier->subscribe("rr/hall/robot/bench/$life");
+  carrier->start(reader, {});
+  rig.start_export();
+  ASSERT_TRUE(connected.wait_for(1));
+  EXPECT_EQ(connected.items()[0], 2U);
+  carrier->stop({});
+}
+
+TEST_F(Gateways, AChangeOfTheServiceIsInTheLogOfTheServingGateway) {
+  static_cast<void>(rig.connect());
+  const auto is_logged = [&](const std::string& wanted) {
+    return comes_true([&] {
+      const auto lines = rig.log.items();
+      return std::ranges::any_of(lines, [&](const auto& line) { return line.starts_with(wanted); });
+    });
+  };
+  EXPECT_TRUE(is_logged("rr/hall/robot/bench is up"));
+  rig.robot.close();
+  EXPECT_TRUE(is_logged("rr/hall/robot/bench is down: "));
+}
+
 TEST_F(Gateways, WiresHaveTheNewestValue) {
   const auto bench = rig.connect();
   auto force = bench->wire("force").connect();
@@ -106,6 +152,14 @@ TEST_F(Gateways, WiresHaveTheNewestValue) {
   ASSERT_TRUE(retained.has_value());
   EXPECT_EQ(retained->find("type"), "double");
   EXPECT_EQ(retained->payload.size(), 19U);
+}
+
+TEST_F(Gateways, PeeksAskTheRobot) {
+  const auto bench = rig.connect();
+  rig.robot.bench().wire("force").on_peek_in([] { return dynamic::Value(8.5); });
+  EXPECT_EQ(bench->wire("force").peek_in().value.as<double>(), 8.5);
+  rig.robot.bench().wire("target").on_peek_out([] { return dynamic::Value(-1.5); });
+  EXPECT_EQ(bench->wire("target").peek_out().value.as<double>(), -1.5);
 }
 
 TEST_F(Gateways, AWireHasItsNewestValueWhenTheLinkIsUpAgain) {

@@ -53,6 +53,17 @@ inline std::optional<std::uint64_t> number_property(const Message& message, std:
   return number;
 }
 
+/// The same with a sign.
+inline std::optional<std::int32_t> signed_property(const Message& message, std::string_view name) {
+  const auto text = message.find(name);
+  if (!text) return std::nullopt;
+  std::int32_t number = 0;
+  const char* const end = text->data() + text->size();
+  const auto result = std::from_chars(text->data(), end, number);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return number;
+}
+
 /// `2026-11-27T11:44:16Z` of nanoseconds since 1970.
 inline std::string date_text(std::uint64_t nanoseconds) {
   const auto seconds = static_cast<std::time_t>(nanoseconds / 1'000'000'000);

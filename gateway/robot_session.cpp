@@ -26,7 +26,39 @@ dynamic::Value index_of(const dynamic::Object& object, const PathStep& step) {
   throw Error(ErrorCode::object_not_found, "`" + step.name + "` has numbers as indexes");
 }
 
+using Found = RobotSession::Found;
+
+void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at, Found done) {
+  if (at == steps.size()) {
+    done(nullptr, from);
+    return;
+  }
+  const dynamic::Value index = index_of(from, steps[at]);
+  const std::string name = steps[at].name;
+  from.async_object(name, index,
+                    [steps = std::move(steps), at, done](const std::exception_ptr& error,
+                                                         const dynamic::Object& object) {
+                      if (error) {
+                        done(error, {});
+                        return;
+                      }
+                      try {
+                        walk(object, steps, at + 1, done);
+                      } catch (...) {
+                        done(std::current_exception(), {});
+                      }
+                    });
+}
+
 }  // namespace
+
+void find_object(const dynamic::Object& from, const std::string& path, Found done) {
+  try {
+    walk(from, path_steps(path), 0, done);
+  } catch (...) {
+    done(std::current_exception(), {});
+  }
+}
 
 std::shared_ptr<RobotSession> RobotSession::open(Node& node, const std::string& url,
                                                  const MappedUser& user, Listener listener) {
@@ -75,33 +107,10 @@ dynamic::Object RobotSession::root() const {
 
 void RobotSession::find(const std::string& path, Found done) {
   try {
-    walk(root(), path_steps(path), 0, done);
+    find_object(root(), path, done);
   } catch (...) {
     done(std::current_exception(), {});
   }
-}
-
-void RobotSession::walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at,
-                        Found done) {
-  if (at == steps.size()) {
-    done(nullptr, from);
-    return;
-  }
-  const dynamic::Value index = index_of(from, steps[at]);
-  const std::string name = steps[at].name;
-  from.async_object(name, index,
-                    [self = shared_from_this(), steps = std::move(steps), at, done](
-                        const std::exception_ptr& error, const dynamic::Object& object) {
-                      if (error) {
-                        done(error, {});
-                        return;
-                      }
-                      try {
-                        self->walk(object, steps, at + 1, done);
-                      } catch (...) {
-                        done(std::current_exception(), {});
-                      }
-                    });
 }
 
 }  // namespace rr::gateway

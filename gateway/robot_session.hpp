@@ -16,6 +16,10 @@
 
 namespace rr::gateway {
 
+/// The object at a path below another (gateway/topics.hpp). Does not wait.
+void find_object(const dynamic::Object& from, const std::string& path,
+                 Function<void(std::exception_ptr, dynamic::Object)> done);
+
 /// The session of one user with the robot's service, made again when it is lost. Any thread may use
 /// it; functions are called on threads of the node.
 class RobotSession : public std::enable_shared_from_this<RobotSession> {
@@ -47,7 +51,6 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
   RobotSession() = default;
   [[nodiscard]] dynamic::Object root() const;
   void listen(Listener listener);
-  void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at, Found done);
 
   ServiceSubscription subscription_;
   std::vector<Subscription> listeners_;

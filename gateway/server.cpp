@@ -2,6 +2,7 @@
 #include "gateway/server.hpp"
 
 #include <algorithm>
+#include <future>
 #include <set>
 #include <utility>
 
@@ -36,10 +37,10 @@ class Server::Core final : public CarrierHandler {
       check_level(service.address.site);
       check_level(service.address.node);
       check_level(service.address.service);
-      services_.push_back(
-          std::make_shared<FarService>(service.address, service.name,
-                                       FarService::Shared{node, worker_, outbox_, carrier_, calls_,
-                                                          reader, log_, [this] { pump(); }}));
+      services_.push_back(std::make_shared<FarService>(
+          service.address, service.name,
+          FarService::Shared{node, worker_, outbox_, carrier_, calls_, reader, log_,
+                             [this] { pump(); }, options.session_alive}));
     }
     life_.topic = calls_->reply_topic();
   }
@@ -52,6 +53,7 @@ class Server::Core final : public CarrierHandler {
   }
 
   void stop() {
+    end_sessions();
     carrier_.stop({});
     worker_.stop();
     calls_->abort();
@@ -92,6 +94,21 @@ class Server::Core final : public CarrierHandler {
   }
 
  private:
+  /// As far as the carrier takes the requests now: what the robot's gateway does not get it finds
+  /// out by itself.
+  void end_sessions() {
+    std::promise<void> done;
+    worker_.post([&] {
+      for (const auto& service : services_) service->end_sessions();
+      // Requests are posted as well: this comes after them.
+      worker_.post([&] {
+        pump();
+        done.set_value();
+      });
+    });
+    done.get_future().wait();
+  }
+
   void take(const Message& message) {
     bool is_taken = false;
     for (const auto& service : services_) is_taken = service->take(message) || is_taken;

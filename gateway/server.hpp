@@ -24,6 +24,8 @@ struct ServerOptions {
   std::string user;                         ///< of the broker; empty: as `reader`
   std::chrono::milliseconds limit{10'000};  ///< of each request to a robot
   std::chrono::milliseconds repeat{1'000};  ///< of a request without an answer
+  /// From one message that clients' sessions at robots are in use to the next.
+  std::chrono::milliseconds session_alive{5'000};
 };
 
 /// The gateway beside clients: offers services of far robots, found on a broker, as ordinary

@@ -66,10 +66,25 @@ void get_memory(const dynamic::Memory& memory, const dynamic::ValueType& type,
   }
 }
 
+void peek(const dynamic::Wire& wire, const dynamic::ValueType& type, const Message& message,
+          const Executed& done) {
+  const auto give_value = [value = give(done, type)](const std::exception_ptr& error,
+                                                     const Timed<dynamic::Value>& timed) {
+    value(error, timed.value);
+  };
+  if (message.find("peek") == "out") {
+    wire.async_peek_out(give_value);
+  } else {
+    wire.async_peek_in(give_value);
+  }
+}
+
 void get(const dynamic::Object& object, const dynamic::MemberDescription& member,
          const Message& message, const Executed& done) {
   if (member.kind == MemberKind::memory) {
     get_memory(object.memory(member.name), member.type, message, done);
+  } else if (member.kind == MemberKind::wire) {
+    peek(object.wire(member.name), member.type, message, done);
   } else {
     object.async_get(member.name, give(done, member.type));
   }
@@ -110,18 +125,37 @@ void ServiceExporter::execute(const RequestTopic& request, const Message& messag
     }
     return;
   }
-  session_of(request.user)
-      ->find(request.path, [weak = Weak(shared_from_this()), request, message, done](
-                               const std::exception_ptr& error, const dynamic::Object& object) {
-        const Self self = weak.lock();
-        if (!self) return;
-        try {
-          if (error) std::rethrow_exception(error);
-          self->perform(request, message, object, done);
-        } catch (...) {
-          done(std::current_exception(), {});
-        }
-      });
+  const auto name = message.find("session");
+  const auto session = name ? sessions_.find(request.user, *name) : nullptr;
+  find_object_for(request, message,
+                  [weak = Weak(shared_from_this()), request, message, session, done](
+                      const std::exception_ptr& error, const dynamic::Object& object) {
+                    const Self self = weak.lock();
+                    if (!self) return;
+                    try {
+                      if (error) std::rethrow_exception(error);
+                      if (session) self->serve_callbacks(request, message, *session, object);
+                      if (request.verb == Verb::lock) {
+                        self->keep_lock(request, message, session, object, done);
+                      } else {
+                        self->perform(request, message, object, done);
+                      }
+                    } catch (...) {
+                      done(std::current_exception(), {});
+                    }
+                  });
+}
+
+void ServiceExporter::find_object_for(const RequestTopic& request, const Message& message,
+                                      RobotSession::Found found) {
+  const auto name = message.find("session");
+  if (!name) {
+    session_of(request.user)->find(request.path, std::move(found));
+  } else if (const auto session = sessions_.find(request.user, *name)) {
+    session->find(request.path, std::move(found));
+  } else {
+    found(error_pointer(ErrorCode::connection_error, "the session at the robot has ended"), {});
+  }
 }
 
 void ServiceExporter::perform(const RequestTopic& request, const Message& message,

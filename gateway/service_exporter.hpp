@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "gateway/call_window.hpp"
+#include "gateway/exported_callbacks.hpp"
 #include "gateway/exported_endpoints.hpp"
 #include "gateway/exported_generators.hpp"
+#include "gateway/exported_sessions.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/outbox.hpp"
 #include "gateway/properties.hpp"
@@ -38,7 +40,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   /// Throws as CallWindow.
   ServiceExporter(ServiceAddress address, ExportedServiceOptions options, std::string folder,
                   Shared shared);
-  ~ServiceExporter() = default;
+  ~ServiceExporter() { callbacks_->abort(); }
   ServiceExporter(const ServiceExporter&) = delete;
   ServiceExporter& operator=(const ServiceExporter&) = delete;
 
@@ -81,6 +83,9 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   using Self = std::shared_ptr<ServiceExporter>;
   using Weak = std::weak_ptr<ServiceExporter>;
 
+  /// Kept by whatever connects members; the service is announced when the last has dropped it.
+  using Attaching = std::shared_ptr<void>;
+
   // service_streams.cpp
   void robot_connected(const dynamic::Object& root);
   void robot_disconnected(const std::string& reason);
@@ -88,12 +93,15 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void publish_life(std::string_view life, const std::string& reason);
   void publish_status();
   void retain(Message message);
-  void attach_path(const std::string& path);
-  void attach_members(const std::string& path, const dynamic::Object& object);
+  Attaching announce_when_attached();
+  void attach_path(const std::string& path, const Attaching& attaching);
+  void attach_members(const std::string& path, const dynamic::Object& object,
+                      const Attaching& attaching);
   void attach_wire(const std::string& path, const dynamic::Object& object,
-                   const dynamic::MemberDescription& member, const ExportRule& rule);
+                   const dynamic::MemberDescription& member, const ExportRule& rule,
+                   const Attaching& attaching);
   void attach_pipe(const std::string& path, const dynamic::Object& object,
-                   const dynamic::MemberDescription& member);
+                   const dynamic::MemberDescription& member, const Attaching& attaching);
   void attach_event(const std::string& path, const dynamic::Object& object,
                     const dynamic::MemberDescription& member);
   void take_value(const std::shared_ptr<WireExport>& wire, const dynamic::Value& value,
@@ -119,10 +127,23 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void answer_error(const RequestTopic& request, const Message& message,
                     const std::exception_ptr& error, std::string_view at);
   std::shared_ptr<RobotSession> session_of(const std::string& user);
+  [[nodiscard]] const MappedUser& login_of(const std::string& user) const;
+
+  // service_sessions.cpp
+  void handle_session(const RequestTopic& request, const Message& message);
+  void open_session(const RequestTopic& request, const Message& message);
+  void serve_callbacks(const RequestTopic& request, const Message& message,
+                       ExportedSession& session, const dynamic::Object& object);
+  void answer_ended(const RequestTopic& request, const Message& message);
+  void keep_lock(const RequestTopic& request, const Message& message,
+                 const std::shared_ptr<ExportedSession>& session, const dynamic::Object& object,
+                 const Function<void(std::exception_ptr, Message)>& done);
 
   // service_execution.cpp
   using Executed = Function<void(std::exception_ptr, Message)>;
   void execute(const RequestTopic& request, const Message& message);
+  void find_object_for(const RequestTopic& request, const Message& message,
+                       RobotSession::Found found);
   void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
                const Executed& done);
   void send_packets(const RequestTopic& request, const Message& message,
@@ -145,6 +166,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
   std::chrono::steady_clock::time_point status_told_{};
+  std::shared_ptr<ExportedCallbacks> callbacks_;
+  ExportedSessions sessions_;
   ExportedGenerators generators_;
   ExportedEndpoints endpoints_;
   std::string trouble_;           // why the robot is not connected, as was reported

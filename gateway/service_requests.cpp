@@ -13,13 +13,15 @@ namespace {
 constexpr std::size_t longest_id = 128;
 
 Allowed access_of(Verb verb) {
+  if (verb == Verb::lock) return locking;
   if (verb == Verb::call || verb == Verb::next) return calling;
   return verb == Verb::set || verb == Verb::poke || verb == Verb::send ? writing : reading;
 }
 
 /// Whether asking twice makes a difference.
 bool has_effect(Verb verb) {
-  return verb == Verb::set || verb == Verb::call || verb == Verb::next || verb == Verb::send;
+  return verb == Verb::set || verb == Verb::call || verb == Verb::next || verb == Verb::send ||
+         verb == Verb::lock;
 }
 
 /// `id` of a user in the window.
@@ -45,6 +47,10 @@ bool ServiceExporter::take(const Message& message) {
 // Whether there is a rule for the object at a path is for its members to say.
 void ServiceExporter::handle(const RequestTopic& request, const Message& message) {
   if (message.correlation.empty() || message.correlation.size() > longest_id) return;
+  if (request.verb == Verb::session) {
+    handle_session(request, message);
+    return;
+  }
   const bool is_allowed =
       request.verb == Verb::object ||
       find_rule(options_, request.user, request.path, request.member, access_of(request.verb));
@@ -53,7 +59,8 @@ void ServiceExporter::handle(const RequestTopic& request, const Message& message
         request, message,
         error_pointer(ErrorCode::permission_denied,
                       "the export file of the robot does not allow " + request.user + " to " +
-                          std::string(verb_name(request.verb)) + " `" + request.member + "`"),
+                          std::string(verb_name(request.verb)) + " `" +
+                          (request.verb == Verb::lock ? request.path : request.member) + "`"),
         "gateway");
   } else if (has_effect(request.verb)) {
     execute_once(request, message);
@@ -64,6 +71,11 @@ void ServiceExporter::handle(const RequestTopic& request, const Message& message
 
 // While the first attempt to connect goes on there is no answer: the request comes again.
 bool ServiceExporter::is_reachable(const RequestTopic& request, const Message& message) {
+  if (const auto name = message.find("session")) {
+    if (sessions_.find(request.user, *name)) return true;
+    answer_ended(request, message);
+    return false;
+  }
   std::optional<Error> reason;
   if (session_of(request.user)->is_connected(reason)) return true;
   if (reason) {
@@ -125,11 +137,15 @@ void ServiceExporter::execute_once(const RequestTopic& request, const Message& m
 }
 
 std::shared_ptr<RobotSession> ServiceExporter::session_of(const std::string& user) {
-  const auto mapped = options_.users.find(user);
-  if (mapped == options_.users.end()) return session_;
+  if (!options_.users.contains(user)) return session_;
   auto& session = user_sessions_[user];
-  if (!session) session = RobotSession::open(*node_, options_.url, mapped->second, {});
+  if (!session) session = RobotSession::open(*node_, options_.url, login_of(user), {});
   return session;
+}
+
+const MappedUser& ServiceExporter::login_of(const std::string& user) const {
+  const auto mapped = options_.users.find(user);
+  return mapped == options_.users.end() ? options_.login : mapped->second;
 }
 
 void ServiceExporter::answer(const RequestTopic& request, const Message& message, Message result) {

@@ -40,13 +40,27 @@ void ServiceExporter::robot_connected(const dynamic::Object& root) {
     shared_.log(LogLevel::error, options_.name + ": " + error.what());
     return;
   }
-  publish_life("up", "");
   std::set<std::string> paths;
   for (const ExportRule& rule : options_.rules) {
     const bool is_literal = rule.path.find('*') == std::string::npos;
     if (is_literal && (rule.access & reading) != 0 && rule.users.empty()) paths.insert(rule.path);
   }
-  for (const std::string& path : paths) attach_path(path);
+  const Attaching attaching = announce_when_attached();
+  for (const std::string& path : paths) attach_path(path, attaching);
+}
+
+// Who reads `up` may rely on it: what the robot sends from now on is logged.
+ServiceExporter::Attaching ServiceExporter::announce_when_attached() {
+  const auto announce = [weak = Weak(shared_from_this()), connection = connection_](void*) {
+    const Self self = weak.lock();
+    if (!self) return;
+    self->shared_.worker.post([weak, connection] {
+      const Self exporter = weak.lock();
+      if (!exporter || exporter->connection_ != connection) return;
+      if (exporter->trouble_.empty()) exporter->publish_life("up", "");
+    });
+  };
+  return {nullptr, announce};
 }
 
 void ServiceExporter::robot_disconnected(const std::string& reason) {
@@ -105,16 +119,16 @@ void ServiceExporter::broker_connected() {
   for (auto& [topic, stream] : streams_) stream.writer->announce();
 }
 
-void ServiceExporter::attach_path(const std::string& path) {
-  session_->find(path, [weak = Weak(shared_from_this()), path, connection = connection_](
+void ServiceExporter::attach_path(const std::string& path, const Attaching& attaching) {
+  session_->find(path, [weak = Weak(shared_from_this()), path, attaching, connection = connection_](
                            const std::exception_ptr& error, const dynamic::Object& object) {
     const Self self = weak.lock();
     if (!self) return;
-    self->shared_.worker.post([weak, path, error, object, connection] {
+    self->shared_.worker.post([weak, path, attaching, error, object, connection] {
       const Self exporter = weak.lock();
       if (!exporter || exporter->connection_ != connection) return;
       if (!error) {
-        exporter->attach_members(path, object);
+        exporter->attach_members(path, object, attaching);
       } else {
         exporter->shared_.log(LogLevel::warning, exporter->options_.name + ": `" + path +
                                                      "` of the export file is not there");
@@ -123,20 +137,21 @@ void ServiceExporter::attach_path(const std::string& path) {
   });
 }
 
-void ServiceExporter::attach_members(const std::string& path, const dynamic::Object& object) {
+void ServiceExporter::attach_members(const std::string& path, const dynamic::Object& object,
+                                     const Attaching& attaching) {
   attached_.push_back(object);
   for (const dynamic::MemberDescription& member : object.members()) {
     const ExportRule* const rule = find_rule(options_, "", path, member.name, reading);
     if (rule == nullptr || (member.access & writeonly) != 0) continue;
-    if (member.kind == MemberKind::wire) attach_wire(path, object, member, *rule);
-    if (member.kind == MemberKind::pipe) attach_pipe(path, object, member);
+    if (member.kind == MemberKind::wire) attach_wire(path, object, member, *rule, attaching);
+    if (member.kind == MemberKind::pipe) attach_pipe(path, object, member, attaching);
     if (member.kind == MemberKind::event) attach_event(path, object, member);
   }
 }
 
 void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object& object,
-                                  const dynamic::MemberDescription& member,
-                                  const ExportRule& rule) {
+                                  const dynamic::MemberDescription& member, const ExportRule& rule,
+                                  const Attaching& attaching) {
   const std::string topic = member_topic(address_, path, member.name);
   auto& wire = wires_[topic];
   if (!wire) wire = std::make_shared<WireExport>();
@@ -145,8 +160,8 @@ void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object
   wire->period = rule.period;
   wire->lifespan = rule.lifespan;
   object.wire(member.name)
-      .async_connect([weak = Weak(shared_from_this()), wire](const std::exception_ptr& error,
-                                                             dynamic::WireConnection end) {
+      .async_connect([weak = Weak(shared_from_this()), wire, attaching](
+                         const std::exception_ptr& error, dynamic::WireConnection end) {
         if (error) return;
         end.on_in([weak, wire](const dynamic::Value& value, const TimeSpec& time) {
              if (const Self self = weak.lock()) self->take_value(wire, value, time);
@@ -215,13 +230,14 @@ void ServiceExporter::repeat_value(WireExport& wire, Clock::time_point now) {
 }
 
 void ServiceExporter::attach_pipe(const std::string& path, const dynamic::Object& object,
-                                  const dynamic::MemberDescription& member) {
+                                  const dynamic::MemberDescription& member,
+                                  const Attaching& attaching) {
   StreamExport* const stream = begin_stream(path, member.name);
   if (stream == nullptr) return;
   const std::vector<dynamic::ParameterDescription> one{{"value", member.type}};
   object.pipe(member.name)
-      .async_connect([weak = Weak(shared_from_this()), stream, one](const std::exception_ptr& error,
-                                                                    dynamic::PipeEndpoint end) {
+      .async_connect([weak = Weak(shared_from_this()), stream, one, attaching](
+                         const std::exception_ptr& error, dynamic::PipeEndpoint end) {
         if (error) return;
         end.on_packet([weak, stream, one](const dynamic::Value& packet) {
              if (const Self self = weak.lock()) self->take_record(stream, one, {packet});

@@ -10,15 +10,17 @@
 namespace rr::gateway {
 namespace {
 
-constexpr std::array<std::pair<Verb, std::string_view>, 9> verbs{{{Verb::get, "get"},
-                                                                  {Verb::set, "set"},
-                                                                  {Verb::call, "call"},
-                                                                  {Verb::poke, "poke"},
-                                                                  {Verb::send, "send"},
-                                                                  {Verb::next, "next"},
-                                                                  {Verb::object, "object"},
-                                                                  {Verb::stream, "stream"},
-                                                                  {Verb::confirm, "confirm"}}};
+constexpr std::array<std::pair<Verb, std::string_view>, 11> verbs{{{Verb::get, "get"},
+                                                                   {Verb::set, "set"},
+                                                                   {Verb::call, "call"},
+                                                                   {Verb::poke, "poke"},
+                                                                   {Verb::send, "send"},
+                                                                   {Verb::next, "next"},
+                                                                   {Verb::object, "object"},
+                                                                   {Verb::stream, "stream"},
+                                                                   {Verb::confirm, "confirm"},
+                                                                   {Verb::lock, "lock"},
+                                                                   {Verb::session, "session"}}};
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -68,6 +70,11 @@ std::string decoded(std::string_view text, std::string_view path) {
 bool is_name(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, is_plain) &&
          text.find('-') == std::string_view::npos && (text[0] < '0' || text[0] > '9');
+}
+
+/// Whether a request is for a member, and not for an object or a whole service.
+bool is_for_member(Verb verb) {
+  return verb != Verb::object && verb != Verb::lock && verb != Verb::session;
 }
 
 PathStep step_of(std::string_view text, std::string_view path) {
@@ -153,7 +160,7 @@ std::optional<RequestTopic> parse_request_topic(const ServiceAddress& address,
   if (verb == verbs.end() || levels.size() < 2 || !is_level_name(levels[1])) return std::nullopt;
   RequestTopic request{verb->first, std::string(levels[1]), {}, {}};
   std::size_t end = levels.size();
-  if (request.verb != Verb::object) {
+  if (is_for_member(request.verb)) {
     if (end == 2 || !is_name(levels[--end])) return std::nullopt;
     request.member = levels[end];
   }

@@ -54,11 +54,13 @@ enum class Verb : std::uint8_t {
   object,   ///< the type of the object at a path
   stream,   ///< records of a stream from a number on
   confirm,  ///< a reader has a stream up to a number
+  lock,     ///< an object is locked or released, or its monitor is entered or left
+  session,  ///< begin and end of a client's session at the robot, and that it is in use
 };
 /// All of them.
-inline constexpr std::array all_verbs{Verb::get,    Verb::set,    Verb::call,
-                                      Verb::poke,   Verb::send,   Verb::next,
-                                      Verb::object, Verb::stream, Verb::confirm};
+inline constexpr std::array all_verbs{Verb::get,     Verb::set,  Verb::call,   Verb::poke,
+                                      Verb::send,    Verb::next, Verb::object, Verb::stream,
+                                      Verb::confirm, Verb::lock, Verb::session};
 /// Packets that one request to send some may have.
 inline constexpr std::size_t most_packets = 256;
 /// Items of a memory that one request may read; gateways ask for less at a time.
@@ -79,8 +81,8 @@ std::string member_topic(const ServiceAddress& address, std::string_view path,
 struct RequestTopic {
   Verb verb = Verb::get;
   std::string user;    ///< of the broker
-  std::string path;    ///< of the object
-  std::string member;  ///< empty for Verb::object
+  std::string path;    ///< of the object; empty for Verb::session
+  std::string member;  ///< empty for Verb::object, Verb::lock, Verb::session
 };
 /// `<service topic>/$<verb>/<user>/<path>/<member>`.
 std::string request_topic(const ServiceAddress& address, const RequestTopic& request);

@@ -62,6 +62,19 @@ TEST(GatewayTopics, OtherTopicsAreNoRequests) {
   }
 }
 
+TEST(GatewayTopics, LocksAreForObjectsAndSessionsForAService) {
+  const auto lock = parse_request_topic(arm, "rr/hall/robot-1/arm/$lock/alice/tools[left]/axis");
+  ASSERT_TRUE(lock.has_value());
+  EXPECT_EQ(lock->verb, Verb::lock);
+  EXPECT_EQ(lock->path, "tools[left].axis");
+  EXPECT_EQ(lock->member, "");
+  const std::string topic = request_topic(arm, {Verb::session, "alice", "", ""});
+  EXPECT_EQ(topic, "rr/hall/robot-1/arm/$session/alice");
+  const auto session = parse_request_topic(arm, topic);
+  ASSERT_TRUE(session.has_value());
+  EXPECT_EQ(session->user, "alice");
+}
+
 TEST(GatewayTopics, AnswersGoToTheUserOnly) {
   EXPECT_TRUE(is_reply_topic(reply_topic("alice", "7f"), "alice"));
   EXPECT_FALSE(is_reply_topic(reply_topic("bob", "7f"), "alice"));

@@ -29,9 +29,9 @@ class ProbeBroker {
 /// Where it is, and who connects.
 struct ProbeOptions {
   std::string url{};        ///< `mqtts://host:port`, or `tls://host:port` with commas
-  std::string user{};       ///< of the broker
+  std::string user{};       ///< of the broker; MQTT: empty for none
   std::string password{};   ///< of the user
-  std::string authority{};  ///< PEM file
+  std::string authority{};  ///< PEM file; MQTT: empty without TLS
   int replicas = 1;         ///< NATS: servers that keep a message
 };
 

@@ -34,9 +34,14 @@ class MqttProbe final : public ProbeBroker {
     if (client_ == nullptr) throw std::runtime_error("no client");
     mosquitto_int_option(client_, MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);
     mosquitto_int_option(client_, MOSQ_OPT_TCP_NODELAY, 1);
-    check(mosquitto_tls_set(client_, options.authority.c_str(), nullptr, nullptr, nullptr, nullptr),
+    if (!options.authority.empty()) {
+      check(
+          mosquitto_tls_set(client_, options.authority.c_str(), nullptr, nullptr, nullptr, nullptr),
           "TLS");
-    mosquitto_username_pw_set(client_, options.user.c_str(), options.password.c_str());
+    }
+    if (!options.user.empty()) {
+      mosquitto_username_pw_set(client_, options.user.c_str(), options.password.c_str());
+    }
     mosquitto_threaded_set(client_, true);
     mosquitto_connect_callback_set(client_, on_connect);
     mosquitto_disconnect_callback_set(client_, on_disconnect);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <semaphore>
 #include <string>
 
 #include "gateway/testing/waiting.hpp"
@@ -90,6 +91,9 @@ class BenchService {
     add_generators();
     add_streams();
     add_tool();
+    bench_.set_monitor(
+        [this](std::chrono::milliseconds timeout) { return monitor_.try_acquire_for(timeout); },
+        [this] { monitor_.release(); });
     bench_.store_memory("trace", std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7});
     bench_.store_memory("grid", grid());
     port_ = node_.listen_tcp(port);
@@ -98,6 +102,10 @@ class BenchService {
     service_.emplace(dynamic::register_service(node_, "bench", bench_, options));
   }
 
+  /// How many clients are connected, gateways included.
+  [[nodiscard]] std::size_t client_count() const { return (*service_)->clients().size(); }
+  /// Ends the service.
+  void close() { (*service_)->close(); }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string url() const {
     return "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
@@ -196,6 +204,7 @@ class BenchService {
   dynamic::ServedObject bench_;
   dynamic::ServedObject tool_;
   std::atomic<int> count_{0};
+  std::binary_semaphore monitor_{1};
   Node node_;
   std::uint16_t port_ = 0;
   std::optional<Service> service_;

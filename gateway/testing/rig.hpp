@@ -29,8 +29,9 @@ class Rig {
  public:
   explicit Rig(Function<std::unique_ptr<Carrier>()> make_carrier,
                std::chrono::milliseconds limit = std::chrono::milliseconds(20'000),
-               const std::string& extra = "", const std::string& password = "open sesame")
-      : make_carrier_(std::move(make_carrier)), limit_(limit) {
+               const std::string& extra = "", const std::string& password = "open sesame",
+               const std::string& definition = bench_definition)
+      : robot(definition), make_carrier_(std::move(make_carrier)), limit_(limit) {
     rules = extra + rules;
     std::ofstream(folder_.path() + "/secret") << password << "\n";
     std::ofstream(folder_.path() + "/login") << "open sesame\n";
@@ -65,6 +66,7 @@ class Rig {
     options.reader = "hub";
     options.limit = limit_;
     options.repeat = std::chrono::milliseconds(300);
+    options.session_alive = std::chrono::milliseconds(300);
     server_.emplace(options, *server_node_, *server_carrier_, logger());
   }
   void stop_server() {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string_view>
+
+#include "gateway/far_sessions.hpp"
+#include "rr/lock_keeper.hpp"
+
+namespace rr::gateway {
+
+/// Locks and monitors of a far robot's objects: each request of a client goes to the robot, in the
+/// client's own session there.
+class FarLocks final : public LockKeeper, public std::enable_shared_from_this<FarLocks> {
+ public:
+  FarLocks(std::shared_ptr<FarSessions> sessions, ServiceAddress address)
+      : sessions_(std::move(sessions)), address_(std::move(address)) {}
+
+  /// Throws rr::Error: out_of_system_resource when too many requests have no answer yet.
+  void keep(LockRequest request, Answer answer) override;
+
+ private:
+  const std::shared_ptr<FarSessions> sessions_;
+  const ServiceAddress address_;
+  std::atomic<std::size_t> unanswered_{0};
+};
+
+/// `lock` for LockRequest::Operation::lock_for_user: the property `op` of requests.
+std::string_view lock_operation_name(LockRequest::Operation operation);
+/// The reverse. Throws rr::Error (invalid_argument).
+LockRequest::Operation lock_operation(std::string_view name);
+
+}  // namespace rr::gateway
