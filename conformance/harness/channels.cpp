@@ -11,6 +11,7 @@
 #include <rr/url.hpp>
 #include <stdexcept>
 
+#include "conformance/harness/broker.hpp"
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/entry_types.hpp"
 #include "conformance/harness/sharing.hpp"
@@ -43,8 +44,8 @@ rr::NodeId id_of(const std::string& text) {
 }  // namespace
 
 const std::vector<std::string>& channel_names() {
-  static const std::vector<std::string> names = {"tcp", "local",  "shm", "ws",
-                                                 "tls", "rrs+ws", "wss", "intra"};
+  static const std::vector<std::string> names = {"tcp",    "local", "shm",   "ws",   "tls",
+                                                 "rrs+ws", "wss",   "intra", "mqtt", "nats"};
   return names;
 }
 
@@ -87,6 +88,11 @@ Channel::Channel(std::string name)
 Channel::~Channel() {
   std::error_code error;
   if (!folder_.empty()) fs::remove_all(folder_, error);
+}
+
+Broker& Channel::broker() {
+  if (!broker_) broker_ = std::make_unique<Broker>(name_);
+  return *broker_;
 }
 
 // Under the lock.

@@ -23,12 +23,14 @@ class WebSockets;
 
 namespace rr::conformance {
 
+class Broker;
+
 /// Both nodes in one process.
 inline constexpr std::string_view in_process = "intra";
 
 /// `tcp`, `local`, `shm` (a local socket with shared memory), `ws`, `tls` (TCP with STARTTLS),
 /// `rrs+ws` (a web socket with STARTTLS inside), `wss` (a web socket inside of TLS), `intra` (both
-/// nodes in one process).
+/// nodes in one process), `mqtt` and `nats` (two gateways and a broker between the nodes).
 const std::vector<std::string>& channel_names();
 
 /// Both sides of one channel, with what they need: a folder for local sockets, and an authority of
@@ -43,6 +45,9 @@ class Channel {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] bool is_in_process() const { return name_ == in_process; }
+  /// For `mqtt` and `nats`: the broker, which is started by the first call. Throws
+  /// std::runtime_error.
+  Broker& broker();
   /// The messages of recorded web sockets go by TCP as they were recorded.
   [[nodiscard]] bool plays_as_recorded() const { return name_ == "tcp"; }
 
@@ -79,6 +84,7 @@ class Channel {
   std::mutex mutex_;  // guards secrets_: both sides may be played at once
   std::unique_ptr<Secrets> secrets_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
+  std::unique_ptr<Broker> broker_;
 };
 
 /// Where the played service of a scenario waits for its clients.

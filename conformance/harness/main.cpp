@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/harness/broker.hpp"
 #include "conformance/harness/captures.hpp"
 #include "conformance/harness/channels.hpp"
 #include "conformance/harness/recorder.hpp"
@@ -20,8 +21,8 @@ namespace {
 constexpr std::string_view usage =
     R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
                            [--language NAME] [--roles ROLES] [--jobs N] [--only REGEX] [--before COMMAND]
-                           [--channels NAMES] [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
-                           [--json FILE]
+                           [--channels NAMES] [--gateway PROGRAM] [--expected FILE]
+                           [--deviations FILE | --borrowed-deviations FILE] [--json FILE]
        conformance_harness definitions --captures DIR --output DIR
        conformance_harness record --captures DIR --runner PROGRAM --plan NAME --version v2|v4|v4st
 
@@ -29,7 +30,8 @@ play: plays a folder of captures. With --runner, a language's runner is the serv
   decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
   command) brings it to its first state before each scenario; with --listen, a client. Deviations are
   borrowed when the list was written for other captures: not each of them must occur.
-  --channels are those that a runner is played over, tcp without it: tcp local shm ws tls rrs+ws wss intra.
+  --channels are those that a runner is played over, tcp without it: tcp local shm ws tls rrs+ws wss intra,
+  and mqtt and nats, which need the program robdef-gateway (--gateway).
   --jobs scenarios are played with the runner at once (1).
   --roles leaves out what a language does not have: it plays these of decode, encode, service, client.
 definitions: writes the service definitions of the folder, for a compiler.
@@ -108,6 +110,7 @@ void take_option(CommandLine& line, const std::string& name, const std::string& 
       {"--runner", [&] { options.runner = {value}; }},
       {"--roles", [&] { options.roles = roles_of(value); }},
       {"--channels", [&] { options.channels = channels_of(value); }},
+      {"--gateway", [&] { options.gateway = value; }},
       {"--language", [&] { options.language = value; }},
       {"--connect", [&] { options.connect = address_of(value); }},
       {"--before", [&] { options.before = value; }},
@@ -155,6 +158,8 @@ int run(const std::vector<std::string>& words) {
   if (options.runner.empty() && !options.connect && !options.listen) {
     throw UsageError("one of --runner, --connect and --listen is needed");
   }
+  const bool needs_gateway = std::ranges::any_of(options.channels, rr::conformance::is_over_broker);
+  if (needs_gateway && options.gateway.empty()) throw UsageError("--gateway is missing");
   return rr::conformance::run_suite(options) ? 0 : 1;
 }
 

@@ -1,31 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/harness/in_process_replay.hpp"
+#include "conformance/harness/outcome_replay.hpp"
 
 #include <thread>
 
 #include "conformance/harness/client_replay.hpp"
 #include "conformance/harness/entry_types.hpp"
-#include "conformance/harness/runner_client.hpp"
 #include "conformance/harness/service_replay.hpp"
 
 namespace rr::conformance {
 
-class InProcessReplay::Play {
+class OutcomeReplay::Play {
  public:
-  Play(InProcessReplay& replay, const Scenario& scenario, Runner& runner)
-      : replay_(replay), scenario_(scenario), runner_(runner) {
-    result_.run = {scenario.name, scenario.version, Role::client, replay.channel_.name()};
+  Play(OutcomeReplay& replay, const Scenario& scenario, PlayedNodes& nodes)
+      : replay_(replay), scenario_(scenario), nodes_(nodes) {
+    result_.run = {scenario.name, scenario.version, Role::client, replay.channel_};
   }
 
-  Result whole() {
-    const Json settings = replay_.channel_.settings(scenario_.service);
-    runner_.order({{"do", "start"},
-                   {"service", serve_request(replay_.captures_, scenario_, settings)},
-                   {"client", call_request(scenario_, 0, settings)}});
+  Result whole(bool until_fault) {
+    nodes_.begin(scenario_);
     for (const Step& step : scenario_.steps) {
       play(step);
       ++result_.checked;
+      if (until_fault && !result_.faults.empty()) break;
     }
+    nodes_.end();
     return std::move(result_);
   }
 
@@ -33,27 +31,14 @@ class InProcessReplay::Play {
   void play(const Step& step) {
     for_each_frame(step, [&](const Frame& frame) {
       if (!is(frame, EntryType::service_closed)) return;
-      const std::string service = service_of(scenario_, frame.connection);
-      runner_.order({{"do", "close_service"}, {"service", service}});
+      nodes_.close_service(service_of(scenario_, frame.connection));
     });
     if (step.plan.at("op") == "sleep") return sleep(step);
-    const std::string place = replay_.channel_.place(scenario_, 0);
-    const Json outcome =
-        runner_.ask({{"do", "step"}, {"step", told(located(step), scenario_, place)}});
+    const Json outcome = nodes_.play(step);
     if (const ListEntry* listed = deviation_of(step))
       return judge_deviation(step, *listed, outcome);
     const auto text = fault_of_outcome(replay_.comparison_, scenario_.steps, step, outcome);
     if (text) result_.fail(step_place(step.index), step.label, *text);
-  }
-
-  // In a process there is no place but nodes: who names none means that of the scenario.
-  [[nodiscard]] Step located(const Step& step) const {
-    Step named = step;
-    Json& plan = named.plan;
-    if (plan.at("op") == "connect" && !plan.contains("nodeid") && !plan.contains("nodename")) {
-      plan["nodeid"] = scenario_.service.id;
-    }
-    return named;
   }
 
   void sleep(const Step& step) {
@@ -61,7 +46,7 @@ class InProcessReplay::Play {
     for_each_frame(step, [&](const Frame& frame) {
       ends = ends || (frame.from_client && is(frame, EntryType::disconnect_client));
     });
-    if (ends) runner_.order({{"do", "stop_node"}});
+    if (ends) nodes_.stop_client();
     std::this_thread::sleep_for(Milliseconds(step.plan.value("ms", 0)));
   }
 
@@ -80,7 +65,7 @@ class InProcessReplay::Play {
 
   void judge_deviation(const Step& step, const ListEntry& listed, const Json& outcome) {
     const std::string& instead = listed.instead();  // `raises 17`, `error 18`
-    const std::string code = outcome.value("raised", Json()).value("code", Json()).dump();
+    const std::string code = outcome.value("raised", Json::object()).value("code", Json()).dump();
     if (instead != "raises " + code && instead != "error " + code) {
       return result_.fail(step_place(step.index), step.label,
                           "raised " + code + ", not what is listed");
@@ -95,15 +80,14 @@ class InProcessReplay::Play {
     }
   }
 
-  InProcessReplay& replay_;
+  OutcomeReplay& replay_;
   const Scenario& scenario_;
-  Runner& runner_;
+  PlayedNodes& nodes_;
   Result result_;
 };
 
-Result InProcessReplay::play(const Scenario& scenario, const std::vector<std::string>& command) {
-  Runner runner(command, "both");
-  return Play(*this, scenario, runner).whole();
+Result OutcomeReplay::play(const Scenario& scenario, PlayedNodes& nodes, bool until_fault) {
+  return Play(*this, scenario, nodes).whole(until_fault);
 }
 
 }  // namespace rr::conformance

@@ -13,7 +13,8 @@
 #include "conformance/harness/channels.hpp"
 #include "conformance/harness/client_replay.hpp"
 #include "conformance/harness/codec_check.hpp"
-#include "conformance/harness/in_process_replay.hpp"
+#include "conformance/harness/far_nodes.hpp"
+#include "conformance/harness/in_process_nodes.hpp"
 #include "conformance/harness/malformed.hpp"
 #include "conformance/harness/plays.hpp"
 #include "conformance/harness/runner_client.hpp"
@@ -144,6 +145,7 @@ class Suite {
 
   void plan(std::vector<Play>& plays, const std::string& channel) {
     if (channel == in_process) return plan_in_process(plays);
+    if (is_over_broker(channel)) return plan_over_broker(plays, channel);
     if (has(Role::service)) {
       for_each_scenario([&](const Scenario& scenario) {
         plays.push_back({run_of(scenario, Role::service, channel),
@@ -166,13 +168,29 @@ class Suite {
 
   // The runner's client and its service in one process, where there are no bytes to look at.
   void plan_in_process(std::vector<Play>& plays) {
+    plan_outcomes(plays, std::string(in_process), [this](const Scenario& scenario, Channel& over) {
+      InProcessNodes nodes(captures_, over, options_.runner);
+      return OutcomeReplay(comparison_for(over), deviations_, over.name()).play(scenario, nodes);
+    });
+  }
+
+  // A client that is a runner, and a service that is one, on both sides of the broker.
+  void plan_over_broker(std::vector<Play>& plays, const std::string& channel) {
+    plan_outcomes(plays, channel, [this](const Scenario& scenario, Channel& over) {
+      FarNodes nodes(captures_, over.broker(), options_.gateway, options_.runner);
+      return OutcomeReplay(comparison_for(over), deviations_, over.name())
+          .play(scenario, nodes, is_expected_to_fail(scenario, Role::client, over));
+    });
+  }
+
+  using PlayOutcomes = std::function<Result(const Scenario&, Channel&)>;
+  void plan_outcomes(std::vector<Play>& plays, const std::string& channel,
+                     const PlayOutcomes& play) {
     if (!has(Role::service) || !has(Role::client)) return;
     for_each_scenario([&](const Scenario& scenario) {
       if (scenario.hand_made) return;
-      plays.push_back({run_of(scenario, Role::client, std::string(in_process)), [&](Channel& over) {
-                         return InProcessReplay(captures_, comparison_for(over), deviations_, over)
-                             .play(scenario, options_.runner);
-                       }});
+      plays.push_back({run_of(scenario, Role::client, channel),
+                       [&scenario, play](Channel& over) { return play(scenario, over); }});
     });
   }
 

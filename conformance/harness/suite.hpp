@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> runner;  ///< command of the language's runner
   std::optional<Address> connect;   ///< a foreign service
   std::vector<std::string> channels{"tcp"};
+  std::string gateway;        ///< the program for the channels over a broker
   std::size_t jobs = 1;       ///< how many scenarios are played with a runner at once
   std::vector<Role> roles;    ///< those the language has; empty for all
   std::string before;         ///< shell command that resets it before a scenario
