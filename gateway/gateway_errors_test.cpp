@@ -102,13 +102,13 @@ TEST(GatewayErrors, AGatewayTakesTheNodeOfOneThatHasGone) {
   other->stop({});
 }
 
-// A lock that protected from nobody would be worse than none.
-TEST(GatewayErrors, LocksOfFarClientsAreRefusedAndThoseOfNearOnesHold) {
+// The rules of this rig have no access `lock`.
+TEST(GatewayErrors, LocksThatAreNotExportedAreRefusedAndThoseOfNearClientsHold) {
   MemoryBroker broker;
   Rig rig([&] { return broker.carrier(); });
   const auto bench = rig.connect();
   const Error refused = failure_of([&] { return lock(bench->stub()), 0; });
-  EXPECT_EQ(refused.code(), ErrorCode::invalid_operation);
+  EXPECT_EQ(refused.code(), ErrorCode::permission_denied);
   EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
 
   Node near_node;
