@@ -45,7 +45,9 @@ void ExportedEndpoints::close_idle(Clock::time_point now, Clock::duration idle) 
   {
     const MutexLock lock(mutex_);
     std::erase_if(open_, [&](auto& entry) {
-      const bool is_idle = now - entry.second.used >= idle || !entry.second.end.is_open();
+      // One that has ended, perhaps with its session, needs no word to the robot.
+      if (!entry.second.end.is_open()) return true;
+      const bool is_idle = now - entry.second.used >= idle;
       if (is_idle) ended.push_back(std::move(entry.second.end));
       return is_idle;
     });

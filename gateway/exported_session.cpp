@@ -19,6 +19,9 @@ constexpr std::size_t most_objects = 1'024;
 /// serving gateways, and of their clients, wait for longer.
 constexpr std::chrono::seconds longest_silence{3};
 
+/// For the release of a lock when its session ends.
+constexpr std::chrono::milliseconds release_time{2'000};
+
 using LockOperation = LockRequest::Operation;
 
 void carry_out(LockOperation operation, const Stub& object, std::chrono::milliseconds timeout) {
@@ -40,6 +43,16 @@ void carry_out(LockOperation operation, const Stub& object, std::chrono::millise
       break;
     case LockOperation::go_on_entering:
       break;
+  }
+}
+
+/// As far as the robot is there.
+void release(const dynamic::Client& client, const Stub& object) {
+  if (!client.is_open()) return;
+  try {
+    unlock(object, CallOptions{.timeout = release_time});
+  } catch (const Error&) {
+    // It is released, or ends with the connections.
   }
 }
 
@@ -102,8 +115,24 @@ void ExportedSession::keep(LockRequest request, const dynamic::Object& object, L
   } else {
     run([operation = request.operation,
          stub = object.shared_stub()] { carry_out(operation, *stub, {}); },
-        [done = std::move(done)](const std::exception_ptr& error) { done(error, false); });
+        [weak = weak_from_this(), operation = request.operation, path = request.path,
+         stub = object.shared_stub(), done = std::move(done)](const std::exception_ptr& error) {
+          const auto self = weak.lock();
+          if (self && !error) self->note(operation, path, stub);
+          done(error, false);
+        });
   }
+}
+
+void ExportedSession::note(LockOperation operation, const std::string& path,
+                           const std::shared_ptr<Stub>& object) {
+  const MutexLock lock(mutex_);
+  if (operation == LockOperation::lock_for_user) user_locks_[path] = object;
+}
+
+void ExportedSession::forget_lock(const std::string& path) {
+  const MutexLock lock(mutex_);
+  user_locks_.erase(path);
 }
 
 void ExportedSession::enter(const LockRequest& request, const dynamic::Object& object,
@@ -186,18 +215,21 @@ void ExportedSession::join_finished() {
   });
 }
 
-// What waits for the robot ends with the session.
+// Operations that wait for the robot end with the session.
 void ExportedSession::close() {
   dynamic::Client client;
   std::vector<Operation> operations;
   std::map<std::string, dynamic::Object> objects;
+  std::map<std::string, std::shared_ptr<Stub>> locks;
   {
     const MutexLock lock(mutex_);
     is_closed_ = true;
     client = std::move(client_);
     operations.swap(operations_);
     objects.swap(objects_);
+    locks.swap(user_locks_);
   }
+  for (const auto& [path, object] : locks) release(client, *object);
   if (client.is_open()) client.close();
   for (Operation& operation : operations) operation.thread.join();
 }

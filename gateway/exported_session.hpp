@@ -59,6 +59,8 @@ class ExportedSession : public std::enable_shared_from_this<ExportedSession> {
   /// comes on the thread that uses this. Throws rr::Error: invalid_operation for what does not fit
   /// the operations before, out_of_system_resource when too many run.
   void keep(LockRequest request, const dynamic::Object& object, Locked done);
+  /// A lock of its user at this path was released in another session.
+  void forget_lock(const std::string& path);
   /// Answers those that have waited long for a monitor. To be called often.
   void tick(Clock::time_point now);
   /// Ends it, and waits until that is done: for a thread that may be blocked.
@@ -80,6 +82,8 @@ class ExportedSession : public std::enable_shared_from_this<ExportedSession> {
   void enter(const LockRequest& request, const dynamic::Object& object, Locked done);
   void entered(const std::string& path, const std::exception_ptr& error);
   void go_on(const std::string& path, Locked done);
+  void note(LockRequest::Operation operation, const std::string& path,
+            const std::shared_ptr<Stub>& object);
   void run(Function<void()> operation, Function<void(std::exception_ptr)> done);
   void join_finished() RR_REQUIRES(mutex_);
 
@@ -91,6 +95,9 @@ class ExportedSession : public std::enable_shared_from_this<ExportedSession> {
   std::vector<Operation> operations_ RR_GUARDED_BY(mutex_);
   dynamic::Client client_ RR_GUARDED_BY(mutex_);
   std::map<std::string, dynamic::Object> objects_ RR_GUARDED_BY(mutex_);  // by path
+  // That were made here for the user, and not released: by path. The gateway's own session of the
+  // same user would keep them.
+  std::map<std::string, std::shared_ptr<Stub>> user_locks_ RR_GUARDED_BY(mutex_);
   bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/exported_sessions.hpp"
 
+#include <utility>
 #include <vector>
 
 #include "gateway/elements.hpp"
@@ -14,9 +15,10 @@ constexpr std::chrono::seconds closing_tick{60};
 
 }  // namespace
 
-ExportedSessions::ExportedSessions(Worker& worker, const Limits& limits)
+ExportedSessions::ExportedSessions(Worker& worker, const Limits& limits, Ended ended)
     : worker_(worker),
       limits_(limits),
+      ended_(std::move(ended)),
       self_(std::make_shared<ExportedSessions*>(this)),
       closing_(closing_tick, [] {}) {
   closing_.start();
@@ -58,11 +60,18 @@ ExportedSession::Listener ExportedSessions::listener(const Key& key, Opened open
       if (const auto self = weak.lock()) task(**self);
     });
   };
-  return {
-      [post, key, opened = std::move(opened)](const std::exception_ptr& error) {
-        post([key, error, opened](ExportedSessions& self) { self.finish(key, error, opened); });
-      },
-      [post, key] { post([key](ExportedSessions& self) { self.end(key.first, key.second); }); }};
+  return {[post, key, opened = std::move(opened)](const std::exception_ptr& error) {
+            post([key, error, opened](ExportedSessions& self) { self.finish(key, error, opened); });
+          },
+          [post, key] { post([key](ExportedSessions& self) { self.ended_by_robot(key); }); }};
+}
+
+// Not of one that is ended here, which is not among the others any more.
+void ExportedSessions::ended_by_robot(const Key& key) {
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return;
+  ended_(key.second, found->second.session->reply_topic());
+  end(key.first, key.second);
 }
 
 void ExportedSessions::finish(const Key& key, const std::exception_ptr& error,
@@ -98,6 +107,12 @@ std::string ExportedSessions::still_used(const std::string& user, std::string_vi
     }
   }
   return ended;
+}
+
+void ExportedSessions::released(const std::string& user, const std::string& path) {
+  for (auto& [key, entry] : entries_) {
+    if (key.first == user) entry.session->forget_lock(path);
+  }
 }
 
 void ExportedSessions::tick(Clock::time_point now) {

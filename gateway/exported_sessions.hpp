@@ -27,7 +27,10 @@ class ExportedSessions {
   /// Null when the session has begun.
   using Opened = Function<void(std::exception_ptr)>;
 
-  ExportedSessions(Worker& worker, const Limits& limits);
+  /// Called when the robot has ended a session, with its name and where its gateway reads.
+  using Ended = Function<void(const std::string& name, const std::string& reply_topic)>;
+
+  ExportedSessions(Worker& worker, const Limits& limits, Ended ended);
   /// Ends them.
   ~ExportedSessions();
   ExportedSessions(const ExportedSessions&) = delete;
@@ -45,6 +48,8 @@ class ExportedSessions {
   void end(const std::string& user, std::string_view name);
   /// Those of these names, with commas between them, are in use. Returns those that have ended.
   std::string still_used(const std::string& user, std::string_view names);
+  /// A lock of a user of the broker at a path was released.
+  void released(const std::string& user, const std::string& path);
   /// Ends those that nobody has used for too long, and answers for locks. To be called often.
   void tick(Clock::time_point now);
 
@@ -57,11 +62,13 @@ class ExportedSessions {
   using Entries = std::map<Key, Entry>;
 
   ExportedSession::Listener listener(const Key& key, Opened opened);
+  void ended_by_robot(const Key& key);
   void finish(const Key& key, const std::exception_ptr& error, const Opened& opened);
   void close(std::shared_ptr<ExportedSession> session);
 
   Worker& worker_;
   const Limits limits_;
+  const Ended ended_;
   Entries entries_;
   std::shared_ptr<ExportedSessions*> self_;  // for what is posted: it may come when this has gone
   Worker closing_;                           // a session that ends waits for the robot

@@ -46,7 +46,10 @@ ServiceExporter::ServiceExporter(ServiceAddress address, ExportedServiceOptions 
       window_(folder_ + "/$calls", {}, wall_time()),
       callbacks_(std::make_shared<ExportedCallbacks>(shared_.worker, shared_.outbox,
                                                      ExportedCallbacks::Limits(), shared_.pump)),
-      sessions_(shared_.worker, {.silence = options_.session_limit}) {}
+      sessions_(shared_.worker, {.silence = options_.session_limit},
+                [this](const std::string& session, const std::string& reply_topic) {
+                  tell_ended(session, reply_topic);
+                }) {}
 
 void ServiceExporter::connect(Node& node) {
   node_ = &node;

@@ -113,6 +113,23 @@ TEST_F(FarLocksTest, EndWithTheirClient) {
   EXPECT_TRUE(is_released());
 }
 
+TEST_F(FarLocksTest, OfAUserEndWithTheClientThatHasMadeThem) {
+  lock(one->stub());
+  EXPECT_EQ(use(near), ErrorCode::object_locked_error);
+  one.close();
+  EXPECT_TRUE(is_released());
+}
+
+TEST_F(FarLocksTest, ThatAnotherSessionOfTheUserHasMadeAnewStay) {
+  lock(one->stub());
+  unlock(two->stub());
+  lock(two->stub());
+  one.close();
+  // The session of the first has ended when that of the second is the only one.
+  EXPECT_TRUE(comes_true([&] { return rig.robot.client_count() == 3; }));
+  EXPECT_EQ(use(near), ErrorCode::object_locked_error);
+}
+
 TEST_F(FarLocksTest, EndWithTheServingGateway) {
   lock(one->stub(), LockOwner::session);
   EXPECT_EQ(use(near), ErrorCode::object_locked_error);
@@ -147,6 +164,14 @@ TEST_F(FarLocksTest, EndWithTheGatewayOfTheRobot) {
   rig.start_export();
   EXPECT_TRUE(comes_true([&] { return !one.is_open(); }));
   EXPECT_EQ(lock_by(two, LockOwner::session), ErrorCode::none);
+}
+
+TEST_F(FarLocksTest, TheClientIsDisconnectedWhenTheRobotEndsItsSession) {
+  lock(one->stub(), LockOwner::session);
+  EXPECT_TRUE(two.is_open());
+  rig.robot.close();
+  EXPECT_TRUE(comes_true([&] { return !one.is_open(); }));
+  EXPECT_TRUE(two.is_open());
 }
 
 TEST_F(FarLocksTest, AreTakenOnceOverABadLink) {

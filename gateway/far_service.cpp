@@ -63,10 +63,7 @@ bool FarService::take(const Message& message) {
     take_wire(wire->second, message);
     return true;
   }
-  const auto callback = message.find("callback");
-  if (callback && message.topic == shared_.reader.reply_topic) {
-    return take_callback(message, *callback);
-  }
+  if (message.topic == shared_.reader.reply_topic) return take_reply(message);
   if (message.topic == topic_ + "/$life") {
     take_life(message);
   } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
@@ -77,6 +74,14 @@ bool FarService::take(const Message& message) {
     take_definition(message, std::string_view(message.topic).substr(topic_.size() + 5));
   }
   // Several services may belong to one robot.
+  return false;
+}
+
+/// What comes to this gateway alone, and is no answer to a request.
+bool FarService::take_reply(const Message& message) {
+  if (const auto callback = message.find("callback")) return take_callback(message, *callback);
+  // Sessions of other services are unknown here.
+  if (message.correlation.empty()) sessions_->take_ended(message);
   return false;
 }
 

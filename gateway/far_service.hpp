@@ -65,6 +65,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
     std::uint64_t number = 0;
   };
 
+  bool take_reply(const Message& message);
   void take_life(const Message& message);
   void take_definition(const Message& message, std::string_view rest);
   void offer_when_complete();

@@ -218,12 +218,12 @@ void FarSessions::tick(Clock::time_point now) {
   calls_->request(std::move(request), [weak = weak_from_this()](const std::exception_ptr& error,
                                                                 const Message& answer) {
     const auto self = weak.lock();
-    if (self && !error) self->lose_ended(answer);
+    if (self && !error) self->take_ended(answer);
   });
 }
 
-void FarSessions::lose_ended(const Message& answer) {
-  for (const std::string_view name : parts_of(answer.find("ended").value_or(""), ',')) {
+void FarSessions::take_ended(const Message& message) {
+  for (const std::string_view name : parts_of(message.find("ended").value_or(""), ',')) {
     if (const auto client = client_of(name)) lose(*client, std::string(name));
   }
 }

@@ -55,6 +55,8 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   /// Says to the robot's gateway that sessions are in use. To be called often, on the worker's
   /// thread.
   void tick(Clock::time_point now);
+  /// A message in which the robot's gateway names sessions that have ended. On the worker's thread.
+  void take_ended(const Message& message);
   /// The client whose session has this name.
   [[nodiscard]] std::optional<std::uint32_t> client_of(std::string_view session) const;
 
@@ -79,7 +81,6 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   void send(std::uint32_t client, const std::string& name, FarRequest wanted, FarCalls::Done done);
   void end_at_robot(const std::string& name);
   void lose(std::uint32_t client, const std::string& name);
-  void lose_ended(const Message& answer);
   [[nodiscard]] FarRequest about_session(std::string_view operation, const std::string& name) const;
 
   const std::shared_ptr<FarCalls> calls_;

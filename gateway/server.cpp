@@ -94,8 +94,8 @@ class Server::Core final : public CarrierHandler {
   }
 
  private:
-  /// As far as the carrier takes the requests now: what the robot's gateway does not get it finds
-  /// out by itself.
+  /// As far as the carrier takes the requests now. The robot's gateway ends the others by its
+  /// limit.
   void end_sessions() {
     std::promise<void> done;
     worker_.post([&] {

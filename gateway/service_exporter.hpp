@@ -134,6 +134,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void open_session(const RequestTopic& request, const Message& message);
   void serve_callbacks(const RequestTopic& request, const Message& message,
                        ExportedSession& session, const dynamic::Object& object);
+  void tell_ended(const std::string& session, const std::string& reply_topic);
   void answer_ended(const RequestTopic& request, const Message& message);
   void keep_lock(const RequestTopic& request, const Message& message,
                  const std::shared_ptr<ExportedSession>& session, const dynamic::Object& object,

@@ -66,6 +66,12 @@ void ServiceExporter::open_session(const RequestTopic& request, const Message& m
   }
 }
 
+// If this is lost, the next message about sessions in use is answered by it.
+void ServiceExporter::tell_ended(const std::string& session, const std::string& reply_topic) {
+  shared_.outbox.add({reply_topic, {}, {{"ended", session}}});
+  shared_.pump();
+}
+
 void ServiceExporter::answer_ended(const RequestTopic& request, const Message& message) {
   Message result;
   set_error(result,
@@ -113,16 +119,22 @@ void ServiceExporter::keep_lock(const RequestTopic& request, const Message& mess
     if (!timeout) throw Error(ErrorCode::invalid_argument, "`timeout` of the request is no number");
     wanted.timeout = std::chrono::milliseconds(*timeout);
   }
-  shared_.worker.post([session, wanted, object, done] {
-    const auto locked = [done](const std::exception_ptr& error, bool is_waiting) {
-      done(error, is_waiting ? Message{"", {}, {{"waiting", "1"}}} : Message());
-    };
-    try {
-      session->keep(wanted, object, locked);
-    } catch (...) {
-      done(std::current_exception(), {});
-    }
-  });
+  shared_.worker.post(
+      [weak = Weak(shared_from_this()), user = request.user, session, wanted, object, done] {
+        const auto locked = [weak, user, wanted, done](const std::exception_ptr& error,
+                                                       bool is_waiting) {
+          const Self self = weak.lock();
+          if (self && !error && wanted.operation == LockRequest::Operation::unlock) {
+            self->sessions_.released(user, wanted.path);
+          }
+          done(error, is_waiting ? Message{"", {}, {{"waiting", "1"}}} : Message());
+        };
+        try {
+          session->keep(wanted, object, locked);
+        } catch (...) {
+          done(std::current_exception(), {});
+        }
+      });
 }
 
 }  // namespace rr::gateway

@@ -49,7 +49,7 @@ void ServiceExporter::robot_connected(const dynamic::Object& root) {
   for (const std::string& path : paths) attach_path(path, attaching);
 }
 
-// Who reads `up` may rely on it: what the robot sends from now on is logged.
+// Readers of `up` may rely on it: packets and events of the robot are logged from now on.
 ServiceExporter::Attaching ServiceExporter::announce_when_attached() {
   const auto announce = [weak = Weak(shared_from_this()), connection = connection_](void*) {
     const Self self = weak.lock();

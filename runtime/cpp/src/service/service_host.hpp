@@ -82,7 +82,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] AnswerSizes& answer_sizes() { return answer_sizes_; }
   [[nodiscard]] Locks& locks() { return locks_; }
   [[nodiscard]] Monitors& monitors() { return *monitors_; }
-  /// Who keeps locks and monitors in place of these two; null for nobody.
+  /// The keeper of locks and monitors in place of these two; null for none.
   [[nodiscard]] std::shared_ptr<LockKeeper> lock_keeper() const;
   void set_lock_keeper(std::shared_ptr<LockKeeper> keeper);
 
