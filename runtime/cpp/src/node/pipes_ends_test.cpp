@@ -96,7 +96,7 @@ TEST(Pipes, AFunctionThatHoldsItsPipeEndsWithTheObject) {
       end.send(static_cast<double>(numbers.endpoint_count()));
     });
     auto board = boards.connect();
-    EXPECT_EQ(board->numbers().connect().receive_for(10s), 0);
+    EXPECT_EQ(board->numbers().connect().receive_for(10s), 1);
   }
   EXPECT_TRUE(held.expired());
 }
