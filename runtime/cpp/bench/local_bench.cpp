@@ -105,9 +105,7 @@ class Value final : public rr::Skeleton {
       std::uint32_t size = 0;
       std::uint32_t count = 0;
       std::uint32_t pause = 0;
-      request.read(size);
-      request.read(count);
-      request.read(pause);
+      request.read(size, count, pause);
       const double median = publish(size, count, std::chrono::microseconds(pause));
       request.answer(&median);
     } else {

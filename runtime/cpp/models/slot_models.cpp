@@ -116,6 +116,7 @@ struct SleeperModel : rl::test_suite<SleeperModel<Sync>, 3> {
       if (sleepers.load() != 0) Sync::wake(&words.bell);
     } else if (index == 1) {
       sleepers.fetch_add(1);
+      Steps::ring(words);
       Sync::wake(&words.bell);
     } else {
       while (true) {

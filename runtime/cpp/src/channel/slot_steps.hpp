@@ -19,7 +19,7 @@ struct SlotWords {
 
   alignas(line) Atomic<std::uint64_t> newest{0};   ///< the number of the newest value; 0: none
   Atomic<std::uint32_t> is_over{0};                ///< not 0: nothing follows in this memory
-  alignas(line) typename Sync::SleepWord bell{0};  ///< grows with each value, and at the end
+  alignas(line) typename Sync::SleepWord bell{0};  ///< grows whenever readers are to look
 };
 
 /// The same of one slot.
@@ -51,13 +51,15 @@ struct SlotSteps {
   static void commit(Words& words, Head& head, std::uint64_t number) {
     head.sequence.store(2 * number, std::memory_order_release);
     words.newest.store(number, std::memory_order_release);
-    words.bell.fetch_add(1);
+    ring(words);
   }
   /// Nothing follows.
   static void end(Words& words) {
     words.is_over.store(1, std::memory_order_release);
-    words.bell.fetch_add(1);
+    ring(words);
   }
+  /// Whoever sleeps, or is about to, looks again once it has been woken.
+  static void ring(Words& words) { words.bell.fetch_add(1); }
 
   enum class State : std::uint8_t {
     whole,  ///< the value of the number is in the slot

@@ -129,6 +129,7 @@ void SlotWriter::ring() {
 
 void SlotWriter::add_sleeper() {
   sleepers_.fetch_add(1);
+  Steps::ring(words_);  // a publisher may have looked before that
   platform::wake_shared(&words_.bell);
 }
 

@@ -116,7 +116,7 @@ class SlotReader {
   /// Any thread: nothing follows what is there.
   [[nodiscard]] bool is_over() const { return words_.is_over.load(std::memory_order_acquire) != 0; }
 
-  /// Any thread: a number that changes with each value, and at the end.
+  /// Any thread: a number that changes with each value, at the end, and for no reason.
   [[nodiscard]] std::uint32_t bell() const { return words_.bell.load(); }
   /// Any thread: sleeps until that number has changed from `bell`, or interrupt() was called, or
   /// for no reason, and for `time` at most.

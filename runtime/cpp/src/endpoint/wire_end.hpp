@@ -38,6 +38,9 @@ struct NewestSteps;
 /// Functions of the program are called by work that is posted while there is something to tell:
 /// it goes on until every function has seen the newest value, so that one that is slow misses
 /// values and holds up nothing else. Nothing of the program runs under the lock.
+///
+/// Large because what comes, what is sent and what is told to the program meet in one lock, and the
+/// two sides differ in a few functions of each.
 struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
  public:
   State(std::shared_ptr<endpoint::Core> core, std::string path, const Member& member);

@@ -239,7 +239,7 @@ TEST_F(WireSlots, LargerValuesMakeLargerSlots) {
     ASSERT_TRUE(eventually([] { return published() == 1 && read_here() == 1; }));
   }
   object_->trace().set_in(trace_of(1'200'001, 7));
-  EXPECT_EQ(trace.in().size(), 1'200'001U) << "by the slots";
+  EXPECT_TRUE(eventually([&] { return trace.in().size() == 1'200'001U; }));
   EXPECT_NE(published_ids(), ids);
 }
 
@@ -382,7 +382,7 @@ TEST_F(WireSlots, WhoeverLeavesAServiceWithUsersLeavesTheMemoryBehind) {
   EXPECT_TRUE(eventually([] { return published() == 1 && read_here() == 1; }));
   EXPECT_NE(published_ids(), before);
   object_->level().set_in(3);
-  EXPECT_EQ(alice.in(), 3) << "by the slots";
+  EXPECT_TRUE(eventually([&] { return alice.in() == 3; }));
 }
 
 TEST_F(WireSlots, WhoeverLosesTheRightIsDisconnected) {
@@ -437,7 +437,7 @@ TEST_F(WireSlots, AReaderMayBeKilledAtAnyTime) {
     reader.wait_for("reading");
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
     reader.signal(SIGKILL);
-    EXPECT_GT(level.in(), last);
+    EXPECT_TRUE(eventually([&] { return level.in() > last; }));
     last = level.in();
   }
   is_over = true;
@@ -518,7 +518,7 @@ TEST_F(WireSlots, MayBeWrittenOverByTheService) {
   serve(options());
   std::mt19937_64 random(51);
   int broken = 0;
-  for (int round = 0; round < 100 / slowness(); ++round) {
+  for (int round = 0; round < 40 / slowness(); ++round) {
     {
       Node client(options());
       auto wired = client.connect<WiredStub>(url());
@@ -542,9 +542,9 @@ TEST_F(WireSlots, MayBeWrittenOverByTheService) {
           if (chance() % 4 == 0) std::this_thread::yield();
         }
       });
-      for (int i = 0; i < 50 && level.is_open(); ++i) {
+      for (int i = 0; i < 3000 && level.is_open(); ++i) {
         object_->level().set_in(i);
-        object_->trace().set_in(trace_of(static_cast<std::size_t>(i) * 10, i));
+        object_->trace().set_in(trace_of(static_cast<std::size_t>(i % 500), i));
         (void)level.try_in();
         (void)trace.try_in();
       }
