@@ -59,7 +59,7 @@ class ClientWireEnd final : public WireEnd::State {
   void ask(endpoint::SlotMode mode);
   void ask_soon(endpoint::SlotMode mode);
   void watch();
-  [[nodiscard]] std::shared_ptr<channel::SlotReader> watched(bool& is_woken);
+  [[nodiscard]] std::shared_ptr<channel::SlotReader> watched(bool& must_ask);
   bool end_watch();
 
   const std::shared_ptr<Session> session_;

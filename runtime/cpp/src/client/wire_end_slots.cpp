@@ -160,9 +160,9 @@ void ClientWireEnd::watch() {
     return;
   }
   channel::Time wanted = channel::Clock::now();
-  bool is_woken = false;
-  while (const std::shared_ptr<SlotReader> slots = watched(is_woken)) {
-    if (!is_woken) ask(SlotMode::woken);
+  bool must_ask = false;
+  while (const std::shared_ptr<SlotReader> slots = watched(must_ask)) {
+    if (must_ask) ask(SlotMode::woken);
     const std::uint32_t bell = slots->bell();
     read_slots(true);
     const channel::Time now = channel::Clock::now();
@@ -176,11 +176,11 @@ void ClientWireEnd::watch() {
   }
 }
 
-// What the thread sleeps on; null when there is nothing any more, and it is done. `is_woken`: the
-// service has been asked to wake it.
-std::shared_ptr<SlotReader> ClientWireEnd::watched(bool& is_woken) {
+// What the thread sleeps on; null when there is nothing any more, and it is done. `must_ask`: the
+// service has not been asked to wake it. Where that was refused it looks after each sleep.
+std::shared_ptr<SlotReader> ClientWireEnd::watched(bool& must_ask) {
   const MutexLock lock(slots_mutex_);
-  is_woken = mode_ == SlotMode::woken;
+  must_ask = mode_ == SlotMode::polled;
   if (slots_) return slots_;
   is_watched_ = false;
   watch_share_ = {};

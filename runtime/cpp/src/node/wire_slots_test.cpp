@@ -32,7 +32,7 @@ std::size_t slots(bool is_writable) {
   const std::vector<Mapping> all = mappings();
   return static_cast<std::size_t>(
       std::count_if(all.begin(), all.end(), [&](const Mapping& mapping) {
-        return mapping.kind() == 2 && mapping.is_writable == is_writable;
+        return mapping.kind == 2 && mapping.is_writable == is_writable;
       }));
 }
 std::size_t published() { return slots(true); }
@@ -40,7 +40,7 @@ std::size_t read_here() { return slots(false); }
 std::vector<std::uint64_t> published_ids() {
   std::vector<std::uint64_t> ids;
   for (const Mapping& mapping : mappings()) {
-    if (mapping.kind() == 2 && mapping.is_writable) ids.push_back(mapping.id());
+    if (mapping.kind == 2 && mapping.is_writable) ids.push_back(mapping.id);
   }
   return ids;
 }
@@ -528,7 +528,7 @@ TEST_F(WireSlots, MayBeWrittenOverByTheService) {
           level.on_in([&](double /*value*/, const TimeSpec& /*time*/) {});
       std::vector<SecondMapping> memories;
       for (const Mapping& mapping : mappings()) {
-        if (mapping.kind() != 2 || !mapping.is_writable) continue;
+        if (mapping.kind != 2 || !mapping.is_writable) continue;
         SecondMapping second(mapping);
         ASSERT_TRUE(second.is_there());
         memories.push_back(std::move(second));

@@ -3,6 +3,7 @@
 
 #include <sys/mman.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,37 +15,35 @@
 
 namespace rr::testing {
 
-/// A shared memory that this process has mapped.
+/// A shared memory that this process has mapped (docs/reference/shared_memory.md).
 struct Mapping {
   std::byte* begin = nullptr;
   std::size_t size = 0;
   bool is_writable = false;
-
-  /// Its kind (docs/reference/shared_memory.md): 1 two rings, 2 slots of a wire.
-  [[nodiscard]] std::uint32_t kind() const { return number<std::uint32_t>(0x0C); }
-  /// Of slots: the number that readers know it by.
-  [[nodiscard]] std::uint64_t id() const { return number<std::uint64_t>(0x20); }
-
- private:
-  template <class T>
-  [[nodiscard]] T number(std::size_t at) const {
-    T value{};
-    std::memcpy(&value, begin + at, sizeof value);
-    return value;
-  }
+  std::uint32_t kind = 0;  ///< 1 two rings, 2 slots of a wire
+  std::uint64_t id = 0;    ///< of slots: the number that readers know it by
 };
 
-/// All of them.
+/// All of them, but for those that go meanwhile.
 inline std::vector<Mapping> mappings() {
   std::vector<Mapping> found;
   std::ifstream maps("/proc/self/maps");
+  // Read by the system, which does not mind what is not there any more.
+  std::ifstream memory("/proc/self/mem", std::ios::binary);
   for (std::string line; std::getline(maps, line);) {
     if (line.find("/memfd:robdef") == std::string::npos) continue;
     std::size_t dash = 0;
     const std::uintptr_t begin = std::stoull(line, &dash, 16);
     const std::size_t rights = line.find(' ') + 1;
     const std::uintptr_t end = std::stoull(line.substr(dash + 1), nullptr, 16);
-    found.push_back({reinterpret_cast<std::byte*>(begin), end - begin, line[rights + 1] == 'w'});
+    Mapping mapping{reinterpret_cast<std::byte*>(begin), end - begin, line[rights + 1] == 'w'};
+    std::array<char, 0x28> header{};
+    memory.clear();
+    memory.seekg(static_cast<std::streamoff>(begin));
+    if (!memory.read(header.data(), header.size())) continue;
+    std::memcpy(&mapping.kind, header.data() + 0x0C, sizeof mapping.kind);
+    std::memcpy(&mapping.id, header.data() + 0x20, sizeof mapping.id);
+    found.push_back(mapping);
   }
   return found;
 }
