@@ -96,8 +96,9 @@ class Carrier {
   virtual void stop(const Message& farewell) = 0;
   /// Does not wait.
   virtual Published publish(const Message& message) = 0;
-  /// From now on messages whose topic fits arrive, retained ones first. `+` stands for one level,
-  /// `#` at the end for any. Kept over reconnections. Does not wait.
+  /// From now on messages whose topic fits arrive, those that are retained first; after a lost
+  /// connection they may come later, but never after a newer one of their topic. `+` stands for one
+  /// level, `#` at the end for any. Kept over reconnections. Does not wait.
   virtual void subscribe(const std::string& filter) = 0;
   /// Where it connects to, for messages to people; without credentials.
   [[nodiscard]] virtual std::string url() const = 0;

@@ -10,8 +10,9 @@
 
 namespace rr::gateway {
 
-FarCalls::FarCalls(Worker& worker, Outbox& outbox, Options options, Function<void()> pump)
-    : worker_(worker),
+FarCalls::FarCalls(std::shared_ptr<Worker> worker, Outbox& outbox, Options options,
+                   Function<void()> pump)
+    : worker_(std::move(worker)),
       outbox_(outbox),
       options_(std::move(options)),
       pump_(std::move(pump)),
@@ -28,7 +29,7 @@ void FarCalls::request(FarRequest request, Done done) {
   pending.message.properties = std::move(request.properties);
   pending.message.response_topic = reply_topic_;
   pending.done = std::move(done);
-  worker_.post([self = shared_from_this(), pending = std::move(pending)]() mutable {
+  worker_->post([self = shared_from_this(), pending = std::move(pending)]() mutable {
     self->begin(std::move(pending));
   });
 }

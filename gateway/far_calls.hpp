@@ -41,8 +41,10 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
     std::chrono::milliseconds repeat{1'000};  ///< from one attempt to the next
   };
 
-  /// `pump` is called when something is to be published. What is referred to outlives this.
-  FarCalls(Worker& worker, Outbox& outbox, Options options, Function<void()> pump);
+  /// `pump` is called when something is to be published, on the worker's thread; it and the outbox
+  /// are not used any more when the worker has stopped. Requests that are made then are dropped:
+  /// ends of pipes make some when the server has gone, on threads of the node.
+  FarCalls(std::shared_ptr<Worker> worker, Outbox& outbox, Options options, Function<void()> pump);
 
   /// Any thread.
   void request(FarRequest request, Done done);
@@ -80,7 +82,7 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   void send(Pending& pending, Clock::time_point now);
   void finish(const Id& id, const std::exception_ptr& error, Message answer);
 
-  Worker& worker_;
+  const std::shared_ptr<Worker> worker_;
   Outbox& outbox_;
   Options options_;
   Function<void()> pump_;

@@ -267,16 +267,20 @@ class NatsCarrier final : public Carrier {
   void read_kept(NatsSession& session, Clock::time_point now) {
     if (!session.is_reading) return;
     for (const NatsMessage& request : session.reader.requests(now)) session.link->publish(request);
-    if (!session.reader.is_done(now)) return;
+    const bool is_done = session.reader.is_done(now);
     if (!session.is_begun) {
-      // What was sent until now the server has read when this comes back.
-      if (!std::exchange(session.is_asked, true)) ask_for_echo(session);
+      // What was sent until now the server has read when this comes back. A cluster that elects a
+      // leader answers no reader for seconds: only the first connection waits for what is retained.
+      const bool may_begin = is_done || has_read_kept_;
+      if (may_begin && !std::exchange(session.is_asked, true)) ask_for_echo(session);
       return;
     }
+    if (!is_done) return;
     std::vector<KeptMessage> all = session.reader.take();
     session.kept_inboxes.clear();
     deliver_kept(session, std::move(all), now);
     session.is_reading = false;
+    has_read_kept_ = true;
     session.numbers.clear();
   }
 
@@ -543,6 +547,7 @@ class NatsCarrier final : public Carrier {
   std::shared_ptr<NatsMailbox> mailbox_ RR_GUARDED_BY(mutex_);  // of the connection; null for none
   Message farewell_;            // written before ends_ is set, read after
   bool was_connected_ = false;  // of the carrier's thread
+  bool has_read_kept_ = false;  // what is retained, once since start(); of the carrier's thread
   std::thread thread_;
 };
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "gateway/nats_carrier.hpp"
+#include "gateway/properties.hpp"
+#include "gateway/testing/listener.hpp"
 #include "gateway/testing/nats_server.hpp"
 #include "gateway/testing/rig.hpp"
 
@@ -19,6 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 using testing::comes_true;
 using testing::Kept;
+using testing::Listener;
 using testing::NatsServer;
 using testing::Rig;
 
@@ -95,6 +99,38 @@ TEST_F(NatsCluster, NothingIsLostWhenServersAreKilled) {
   rig.stop_server();
   rig.start_server();
   EXPECT_EQ(rig.connect()->get("speed").as<double>(), 0.5);
+}
+
+// One of three servers is no majority: JetStream answers nothing there, and the rest goes on.
+TEST_F(NatsCluster, MessagesGoOnWhileTheStreamHasNoLeader) {
+  Listener heard;
+  Listener ignored;
+  const auto reader = make_nats_carrier({.url = url(0), .replicas = 3});
+  const auto writer = make_nats_carrier({.url = url(1), .replicas = 3});
+  reader->subscribe("rr/hall/#");
+  reader->start(heard, {});
+  writer->start(ignored, {});
+  Message kept{"rr/hall/kept", bytes_of("kept")};
+  kept.retained = true;
+  ASSERT_TRUE(comes_true([&] { return writer->publish(kept) == Published::taken; }));
+  ASSERT_TRUE(comes_true([&] { return heard.messages.size() > 0; }));
+  servers[2]->kill();
+  servers[0]->kill();
+  ASSERT_TRUE(comes_true([&] { return heard.reasons.size() > 0; }));
+  // Less than what a carrier gives a server for what is retained.
+  const auto end = std::chrono::steady_clock::now() + milliseconds(10'000);
+  const auto has_come = [&] {
+    const auto all = heard.messages.items();
+    return std::ranges::any_of(
+        all, [](const Message& message) { return text_of(message.payload) == "new"; });
+  };
+  while (!has_come() && std::chrono::steady_clock::now() < end) {
+    writer->publish({"rr/hall/new", bytes_of("new")});
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  EXPECT_TRUE(has_come());
+  reader->stop({});
+  writer->stop({});
 }
 
 }  // namespace

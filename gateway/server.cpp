@@ -24,7 +24,9 @@ void check_level(const std::string& name) {
 class Server::Core final : public CarrierHandler {
  public:
   Core(ServerOptions options, Node& node, Carrier& carrier, Log log)
-      : carrier_(carrier), log_(std::move(log)), worker_(server_tick, [this] { tick(); }) {
+      : carrier_(carrier),
+        log_(std::move(log)),
+        worker_(std::make_shared<Worker>(server_tick, [this] { tick(); })) {
     if (options.user.empty()) options.user = options.reader;
     check_level(options.reader);
     check_level(options.user);
@@ -38,7 +40,7 @@ class Server::Core final : public CarrierHandler {
       check_level(service.address.service);
       services_.push_back(
           std::make_shared<FarService>(service.address, service.name,
-                                       FarService::Shared{node, worker_, outbox_, carrier_, calls_,
+                                       FarService::Shared{node, *worker_, outbox_, carrier_, calls_,
                                                           reader, log_, [this] { pump(); }}));
     }
     life_.topic = calls_->reply_topic();
@@ -47,23 +49,23 @@ class Server::Core final : public CarrierHandler {
   void start() {
     carrier_.subscribe(calls_->reply_topic());
     for (const auto& service : services_) service->start();
-    worker_.start();
+    worker_->start();
     carrier_.start(*this, life_);
   }
 
   void stop() {
     carrier_.stop({});
-    worker_.stop();
+    worker_->stop();
     calls_->abort();
     for (const auto& service : services_) service->close();
   }
 
   void on_message(Message message) override {
-    if (!worker_.has_room()) return;
-    worker_.post([this, message = std::move(message)] { take(message); });
+    if (!worker_->has_room()) return;
+    worker_->post([this, message = std::move(message)] { take(message); });
   }
   void on_connected() override {
-    worker_.post([this] {
+    worker_->post([this] {
       is_connected_ = true;
       reason_.clear();
       log_(LogLevel::info, "connected to " + carrier_.url());
@@ -73,7 +75,7 @@ class Server::Core final : public CarrierHandler {
     });
   }
   void on_disconnected(const std::string& reason) override {
-    worker_.post([this, reason] {
+    worker_->post([this, reason] {
       is_connected_ = false;
       refusals_.clear();
       calls_->set_connected(false);
@@ -82,10 +84,10 @@ class Server::Core final : public CarrierHandler {
     });
   }
   void on_room() override {
-    worker_.post([this] { pump(); });
+    worker_->post([this] { pump(); });
   }
   void on_refused(const Refusal& refusal) override {
-    worker_.post([this, refusal] {
+    worker_->post([this, refusal] {
       if (refusals_.insert(refusal.topic).second) log_(LogLevel::error, refusal.text());
       calls_->deny(refusal);
     });
@@ -123,7 +125,7 @@ class Server::Core final : public CarrierHandler {
   Carrier& carrier_;
   Log log_;
   Outbox outbox_;
-  Worker worker_;
+  const std::shared_ptr<Worker> worker_;
   std::shared_ptr<FarCalls> calls_;
   std::vector<std::shared_ptr<FarService>> services_;
   Message life_;

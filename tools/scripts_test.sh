@@ -27,6 +27,31 @@ for script in ./try ./check; do
   [[ $code = 2 && $said = "usage: $script"* ]] || complain "$script --nonsense ended with $code and said: $said"
 done
 
+# Parts that run beside others are in the table, and one that fails counts.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+said=$(
+  source tools/setup.sh
+  top=$work
+  mkdir -p "$top/build/log"
+  parts_go_on=1
+  two() {
+    part "second" with_progress second sleep 1
+    part "third" false
+  }
+  beside two
+  part "first" true
+  join_beside
+  print_parts
+  [ $failed_parts = 1 ] && echo "one failed"
+  beside two
+  stop_jobs
+  wait "$beside_job" || echo "stopped"
+)
+for line in '^first +[0-9]+ s  ok$' '^second +1 s  ok$' '^third +0 s  FAILED$' '^one failed$' '^stopped$'; do
+  grep -qE "$line" <<<"$said" || complain "parts beside others: no $line in: $said"
+done
+
 # Files of other tools have a copy of the version.
 tools/version --check || status=1
 exit $status

@@ -133,8 +133,10 @@ with_progress() {
 }
 
 running_job=
+beside_job=
 stop_jobs() {
-  [ -z "$running_job" ] || kill -TERM -- "-$running_job" 2>/dev/null || true
+  local job
+  for job in $running_job $beside_job; do kill -TERM -- "-$job" 2>/dev/null || true; done
 }
 
 # part NAME COMMAND...: one line of the table that print_parts shows; ends the script when COMMAND
@@ -160,6 +162,33 @@ part() {
   [ "$parts_go_on" ] || exit $status
 }
 end_parts() { [ $failed_parts = 0 ] || exit 1; }
+
+# beside FUNCTION: runs the parts of FUNCTION while the parts that follow run, until join_beside; what it says is in
+# build/log/beside.log until then. For what needs one processor most of the time.
+beside() {
+  set -m
+  (
+    set +m
+    trap stop_jobs EXIT
+    trap 'exit 143' INT TERM
+    part_rows=()
+    failed_parts=0
+    parts_go_on=1
+    "$1"
+    printf '%s\n' "${part_rows[@]}" >"$top/build/log/beside.rows"
+    exit $((failed_parts != 0))
+  ) >"$top/build/log/beside.log" 2>&1 </dev/null &
+  beside_job=$!
+  set +m
+}
+join_beside() {
+  local status=0 row
+  wait "$beside_job" || status=$?
+  beside_job=
+  cat "$top/build/log/beside.log"
+  while read -r row; do [ -z "$row" ] || part_rows+=("$row"); done <"$top/build/log/beside.rows"
+  [ $status = 0 ] || failed_parts=$((failed_parts + 1))
+}
 
 print_parts() {
   [ ${#part_rows[@]} != 0 ] || return 0

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -112,7 +113,7 @@ TEST(HostileDefinitions, AreRefusedInTextThatIsOnlyText) {
 }
 
 TEST(EndlessDefinitions, EndWithAnErrorOfTheCommand) {
-  RawService* service = nullptr;
+  std::atomic<RawService*> service = nullptr;
   RawService raw("", "x.evil.Root", [&](const RawService::Request& request) {
     if (request.type != EntryType::get_service_desc) return false;
     const std::string& name = request.service_type;
@@ -121,7 +122,7 @@ TEST(EndlessDefinitions, EndWithAnErrorOfTheCommand) {
     answer.elements = RawService::value(
         "servicedef", "service " + (name.empty() ? "x.evil" : name) + "\nstdver 0.10\nimport x.c" +
                           std::to_string(number + 1) + "\nobject Root\nend\n");
-    return service->send(answer);
+    return service.load()->send(answer);
   });
   service = &raw;
   const TemporaryFolder folder;
@@ -132,13 +133,13 @@ TEST(EndlessDefinitions, EndWithAnErrorOfTheCommand) {
 
 // A service need not have what it says that it has.
 TEST(EndlessMemories, AreReadInPartsOnly) {
-  RawService* service = nullptr;
-  std::uint64_t length = 0;
+  std::atomic<RawService*> service = nullptr;
+  std::atomic<std::uint64_t> length = 0;
   const auto answer_to = [&](const RawService::Request& request) {
     if (request.type != EntryType::memory_get_param) return false;
     RawService::Answer answer = RawService::answer_to(request);
-    answer.elements = RawService::value("return", length);
-    return service->send(answer);
+    answer.elements = RawService::value("return", length.load());
+    return service.load()->send(answer);
   };
   RawService raw(
       "service x.evil\nstdver 0.10\npod Page\nfield uint8[4096] bytes\nend\n"

@@ -134,7 +134,7 @@ TEST_F(Members, FunctionsAndGeneratorsAreCalled) {
   EXPECT_EQ(out({"call", "running_sum", "10", "1", "2", "-5"}), "11\n13\n8\n");
   EXPECT_EQ(out({"call", "running_sum", "10", "-"}, "1\n2\n"), "11\n13\n");
   EXPECT_EQ(out({"call", "collect", "1", "2"}), "");
-  EXPECT_EQ(bench_->collected, 3);
+  EXPECT_EQ(bench_->collected.load(), 3);
 }
 
 TEST_F(Members, WiresArePeekedAndPoked) {

@@ -212,6 +212,19 @@ function(robdef_test name)
     PROPERTIES TIMEOUT 120 ENVIRONMENT "${arg_ENVIRONMENT}" ${cost})
 endfunction()
 
+# For programs of .NET that load a library of this build: the address sanitizer must be loaded first, and leaves faults and
+# what .NET keeps at its end to .NET.
+set(robdef_managed_environment "")
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=libasan.so
+    OUTPUT_VARIABLE robdef_libasan OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set(robdef_managed_environment "LD_PRELOAD=${robdef_libasan};ASAN_OPTIONS=detect_leaks=0:handle_segv=0:exitcode=99")
+endif()
+# .NET's own threads, of which the thread sanitizer sees nothing, would be reported as faults: its tests are left out.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
+  set(ROBDEF_DOTNET "" CACHE FILEPATH ".NET for tests" FORCE)
+endif()
+
 # robdef_fuzzer(NAME SOURCES... SEEDS folders... [DEPENDS targets...])
 # A libFuzzer program; `./check --long` runs each from the folders of its seeds.
 function(robdef_fuzzer name)

@@ -150,7 +150,7 @@ TEST(Earlier, TenThousandEditsGiveWhatReadingFromNothingGives) {
   std::mt19937_64 random(21);
   constexpr int edits_of_each = 40;
   int edits = 0;
-  for (int round = 0; edits < 10'000; ++round) {
+  while (edits < 10'000) {
     for (const std::string& text : texts) {
       auto version = std::make_unique<Reading>(text);
       for (int edit = 0; edit < edits_of_each; ++edit, ++edits) {

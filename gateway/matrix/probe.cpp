@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The broker's own latency for gateway/fleet_matrix: values as robots send them, by the broker's
 // library alone.
-//   fleet_probe publish NAME URL USER PASSWORD_FILE AUTHORITY REPLICAS
+//   fleet_probe publish NUMBER URL USER PASSWORD_FILE AUTHORITY REPLICAS
 //   fleet_probe read URL USER PASSWORD_FILE AUTHORITY REPLICAS
 // Prints `ready` when connected. Commands of the first: `rate VALUES` in a second; of the second:
 // `phase NAME` of ages; `report FILE`.
@@ -22,7 +22,13 @@
 namespace rr::gateway::matrix {
 namespace {
 
-constexpr std::size_t payload_size = 32;  // about as the element of a wire
+/// About as large as the element of a wire.
+struct ProbeValue {
+  std::uint64_t source = 0;
+  std::uint64_t number = 0;
+  double sent = 0;
+  std::uint64_t filler = 0;
+};
 
 std::unique_ptr<ProbeBroker> connect(char** words) {
   ProbeOptions options;
@@ -34,13 +40,15 @@ std::unique_ptr<ProbeBroker> connect(char** words) {
   return options.url.starts_with("mqtt") ? make_mqtt_probe(options) : make_nats_probe(options);
 }
 
-void publish(const std::string& name, char** broker_words) {
+void publish(std::uint64_t source, char** broker_words) {
+  const std::string name = "p" + std::to_string(source);
   const auto broker = connect(broker_words);
   std::atomic<double> rate{0};
   std::atomic<bool> is_over{false};
   std::thread thread([&] {
     double due = 0;
     double before = seconds_now();
+    ProbeValue value{source};
     while (!is_over) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       const double now = seconds_now();
@@ -49,9 +57,9 @@ void publish(const std::string& name, char** broker_words) {
       before = now;
       if (due < 1) continue;
       due -= 1;
-      std::string payload(payload_size, '\0');
-      std::memcpy(payload.data(), &now, sizeof now);
-      broker->publish(name, payload);
+      ++value.number;
+      value.sent = now;
+      broker->publish(name, std::string(reinterpret_cast<const char*>(&value), sizeof value));
     }
   });
   take_commands(name, {{"rate", [&](std::istringstream& words) {
@@ -68,10 +76,10 @@ void read(char** broker_words) {
   Ages ages;
   const auto broker = connect(broker_words);
   broker->subscribe([&](const std::string& payload) {
-    double sent = 0;
-    if (payload.size() != payload_size) return;
-    std::memcpy(&sent, payload.data(), sizeof sent);
-    ages.add(seconds_now() - sent);
+    ProbeValue value;
+    if (payload.size() != sizeof value) return;
+    std::memcpy(&value, payload.data(), sizeof value);
+    ages.arrived(value.source, value.number, value.sent, seconds_now());
   });
   take_commands("", {{"phase",
                       [&](std::istringstream& words) {
@@ -95,7 +103,7 @@ int main(int count, char** words) {
   const std::string role = count > 1 ? words[1] : "";
   try {
     if (role == "publish" && count == 8) {
-      rr::gateway::matrix::publish(words[2], words + 3);
+      rr::gateway::matrix::publish(std::stoull(words[2]), words + 3);
     } else if (role == "read" && count == 7) {
       rr::gateway::matrix::read(words + 2);
     } else {

@@ -9,7 +9,7 @@ namespace rr::gateway::matrix {
 
 /// A broker as its own library sees it, with nothing of the gateway between: what the gateway is
 /// compared with. A message for a topic is the newest of it, as a value of a wire is: the broker
-/// keeps it for later subscribers, at as many servers as wires have.
+/// keeps it for later subscribers, in the stream of the gateways where it has streams.
 class ProbeBroker {
  public:
   /// Gets each message, on a thread of the library.

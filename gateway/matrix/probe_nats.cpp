@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "gateway/kept_stream.hpp"
 #include "gateway/matrix/probe_broker.hpp"
 
 namespace rr::gateway::matrix {
@@ -63,29 +64,28 @@ class NatsProbe final : public ProbeBroker {
   void publish(const std::string& topic, const std::string& payload) override {
     // The library would keep it, and send it late.
     if (natsConnection_Status(connection_) != NATS_CONN_STATUS_CONNECTED) return;
-    natsConnection_Publish(connection_, ("probekept." + topic).c_str(), payload.data(),
+    natsConnection_Publish(connection_, ("rrkept.probe." + topic).c_str(), payload.data(),
                            static_cast<int>(payload.size()));
   }
   void subscribe(Taken taken) override {
     taken_ = std::move(taken);
-    check(natsConnection_Subscribe(&subscription_, connection_, "probe.>", on_message, this),
+    check(natsConnection_Subscribe(&subscription_, connection_, "rr.probe.>", on_message, this),
           "subscription");
     check(natsConnection_FlushTimeout(connection_, request_ms), "subscription");
   }
 
  private:
-  /// As the stream of the gateways, for other subjects; the others find the first one's.
+  /// The one of the gateways, so that what the broker does to it is done to both; all but the first
+  /// find it.
   void make_stream(int replicas) {
-    const std::string wanted =
-        R"({"name": "PROBE", "subjects": ["probekept.>"], "storage": "file", "num_replicas": )" +
-        std::to_string(replicas) +
-        R"(, "max_msgs_per_subject": 1, "republish": {"src": "probekept.>", "dest": "probe.>"}})";
+    const std::string subject = stream_create_subject();
+    const std::string wanted = stream_create_text(replicas);
     const auto end = std::chrono::steady_clock::now() + connect_time;
     std::string got = "no answer";
     while (std::chrono::steady_clock::now() < end) {
       natsMsg* answer = nullptr;
-      if (natsConnection_RequestString(&answer, connection_, "$JS.API.STREAM.CREATE.PROBE",
-                                       wanted.c_str(), request_ms) == NATS_OK) {
+      if (natsConnection_RequestString(&answer, connection_, subject.c_str(), wanted.c_str(),
+                                       request_ms) == NATS_OK) {
         got = std::string(natsMsg_GetData(answer),
                           static_cast<std::size_t>(natsMsg_GetDataLength(answer)));
         natsMsg_Destroy(answer);

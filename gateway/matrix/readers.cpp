@@ -58,8 +58,7 @@ class Seen {
     if (number < newest_) {
       fault("value " + std::to_string(number) + " after " + std::to_string(newest_));
     }
-    // The same again after a connection was lost has its age of the first time already.
-    if (number > newest_ && number > 1) ages_.add(now - items.data()[1]);
+    if (number > 0) ages_.arrived(robot_, number, items.data()[1], now);
     newest_ = std::max(newest_, number);
   }
   void closed() {

@@ -177,7 +177,7 @@ class BenchService {
     array.dims = {20, 30};
     std::vector<std::uint8_t> items(600);
     for (std::size_t i = 0; i < items.size(); ++i) items[i] = static_cast<std::uint8_t>(i % 251);
-    array.items = Array<std::uint8_t>(std::move(items));
+    array.items = Array<std::uint8_t>(items);
     return array;
   }
   void add_tool() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -51,7 +52,7 @@ class Bench : public test::bench::BenchDefault {
   using BenchDefault::get_hidden;
 
   const std::shared_ptr<Lamp> lamp = std::make_shared<Lamp>();
-  double collected = 0;
+  std::atomic<double> collected = 0;
 };
 
 }  // namespace robdef::testing

@@ -16,7 +16,8 @@
 namespace robdef::live {
 namespace {
 
-// libedit, loaded when it is needed: a program that generates code should not wait for it.
+// libedit, loaded when it is needed: a program that generates code should not wait for it. It stays
+// loaded, since it keeps memory from the first line on.
 class Library {
  public:
   Library() : handle_(::dlopen("libedit.so.2", RTLD_NOW | RTLD_LOCAL)) {
@@ -26,11 +27,6 @@ class Library {
                    load(history_init, "history_init") && load(history_do, "history") &&
                    load(history_end, "history_end");
   }
-  ~Library() {
-    if (handle_ != nullptr) ::dlclose(handle_);
-  }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
   [[nodiscard]] bool is_there() const { return is_complete_; }
 
   decltype(&::el_init) init = nullptr;

@@ -274,6 +274,7 @@ TEST(BoardResets, InTheMiddleOfACallFailIt) {
     while (!is_reset) outcome = line.ask(Kind::Call, {0, wait_member, 3, 0}, 500ms);
     // One that was answered before the reset has been carried out.
     EXPECT_TRUE(outcome.kind == Outcome::Kind::reset || outcome.kind == Outcome::Kind::reply);
+    line.meanwhile = nullptr;
     line.run(20ms);
     EXPECT_FALSE(line.host.has_session());
   }

@@ -26,11 +26,12 @@ std::uint32_t generation = 0;
 int depth = 0;  // handlers call this again
 
 // Of commands that run in each other: whose command runs is again the outer one's behind the inner.
+// The outermost keeps no connection: it may end the node, which all connections need to close.
 class Entered {
  public:
   Entered() : in_(runtime) {
     ++depth;
-    if (in_ != nullptr) current_ = in_->current;
+    if (depth > 1 && in_ != nullptr) current_ = in_->current;
   }
   ~Entered() {
     --depth;

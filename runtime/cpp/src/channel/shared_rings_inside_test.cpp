@@ -2,8 +2,10 @@
 // The memory of a connection, as another process may have made it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "runtime/cpp/src/channel/shared_rings.hpp"
@@ -22,7 +24,8 @@ class SharedRingsTest : public ::testing::Test {
     std::error_code error;
     const platform::SharedMemory memory = platform::make_shared_memory(size, handle, error);
     EXPECT_TRUE(memory);
-    std::memcpy(memory.bytes(), header.data(), std::min(size, header.size() * sizeof header[0]));
+    const auto bytes = std::as_bytes(std::span(header));
+    std::copy_n(bytes.begin(), std::min(size, bytes.size()), memory.bytes());
     const SharedRings rings = SharedRings::open(handle, error);
     EXPECT_EQ(static_cast<bool>(rings), !error);
     return error;

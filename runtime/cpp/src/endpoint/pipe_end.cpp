@@ -23,10 +23,10 @@ namespace {
 // sent takes no number that the other side would wait for.
 template <class Write>
 std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
-  if (identity.is_client && (identity.member->access & readonly) != 0) {
+  if (identity.is_client && (access_ & readonly) != 0) {
     throw Error(ErrorCode::read_only_member, "Read only pipe");
   }
-  if (!identity.is_client && (identity.member->access & writeonly) != 0) {
+  if (!identity.is_client && (access_ & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only pipe");
   }
   const bool asks = asks_.load(std::memory_order_relaxed);

@@ -7,6 +7,8 @@
 #include <future>
 #include <limits>
 #include <memory>
+#include <mutex>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -83,10 +85,15 @@ class PipeEndTest : public ::testing::Test {
     return ErrorCode::none;
   }
 
-  const std::shared_ptr<Core> core_ = std::make_shared<Core>([] {
+  std::promise<std::string> log_;  // its first line
+  std::once_flag logged_;
+  const std::shared_ptr<Core> core_ = std::make_shared<Core>([this] {
     NodeOptions options;
     options.max_threads = 4;
     options.metrics.is_enabled = true;
+    options.log = [this](LogLevel, std::string_view text) {
+      std::call_once(logged_, [&] { log_.set_value(std::string(text)); });
+    };
     return options;
   }());
   const std::shared_ptr<FakeSide> side_ = std::make_shared<FakeSide>();
@@ -424,6 +431,22 @@ TEST_F(PipeEndTest, PacketsThatArriveAreTakenAcknowledgedAndDelivered) {
   arrival.deliver();
   EXPECT_EQ(got, (std::vector<double>{1, 2}));
   EXPECT_EQ(side_->closed, 0);
+}
+
+// Definitions that were read from a service are gone with the session, and ends may stay.
+TEST_F(PipeEndTest, OutlivesTheDefinitionsOfItsMember) {
+  std::string name = "frames";
+  Member member = pipe<double>("", readonly);
+  member.name = name;
+  const End end = make(member);
+  end->finish();
+  name = "gone!!";
+  member = {};
+  end->on_closed([] { throw std::runtime_error("no"); });
+  EXPECT_EQ(log_.get_future().get(), "a function of the pipe `frames` has thrown: no");
+  const double value = 1;
+  EXPECT_EQ(failure([&] { end->send(&value); }), ErrorCode::read_only_member);
+  EXPECT_TRUE(end->may_receive());
 }
 
 TEST_F(PipeEndTest, AnEndWhoseQueueIsFullIsClosedWhenAllIsDelivered) {

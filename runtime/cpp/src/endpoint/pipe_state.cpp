@@ -80,12 +80,14 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
     : identity(std::move(what)),
       core_(std::move(core)),
       index_text_(std::to_string(identity.index)),
+      name_(identity.member->name),
+      access_(identity.member->access),
       threads_(side ? side->connection().threads() : nullptr),
       side_(std::move(side)),
       packets_(side_->connection().account()) {}
 
 [[gnu::hot]] bool PipeEnd::State::may_receive() const {
-  return (identity.member->access & (identity.is_client ? writeonly : readonly)) == 0;
+  return (access_ & (identity.is_client ? writeonly : readonly)) == 0;
 }
 
 [[gnu::hot]] bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value,

@@ -47,7 +47,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   /// What does not change.
   struct Identity {
     std::string path;
-    const Member* member = nullptr;
+    const Member* member = nullptr;  // definitions that were read go with their session
     const Holding* holding = nullptr;
     std::int32_t index = 0;
     bool is_unreliable = false;
@@ -123,7 +123,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   /// Runs what is the program's; what it throws is logged.
   template <class Run>
   void call(const Run& run) const {
-    endpoint::call_user_code(*core_, "a function of the pipe", identity.member->name, run);
+    endpoint::call_user_code(*core_, "a function of the pipe", name_, run);
   }
 
   // It is written with both locks, so either is enough to read it.
@@ -134,6 +134,8 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
 
   const std::shared_ptr<const endpoint::Core> core_;
   const std::string index_text_;
+  const std::string name_;     // of the member, which may be gone after the end
+  const std::uint8_t access_;  // the same
   const std::shared_ptr<channel::ThreadShare> threads_;  // of the session
   std::atomic<bool> is_closed_{false};                   // written under both locks
 

@@ -85,6 +85,22 @@ TEST(Pipes, AnIndexMayComeBackBeforeItsEndIsTold) {
   EXPECT_FALSE(end.is_open());
 }
 
+TEST(Pipes, AFunctionThatHoldsItsPipeEndsWithTheObject) {
+  std::weak_ptr<int> held;
+  {
+    PipeBoards boards;
+    const auto token = std::make_shared<int>(0);
+    held = token;
+    const auto numbers = boards.board->numbers();
+    numbers.on_connect([numbers, token](PipeEndpoint<double> end) {
+      end.send(static_cast<double>(numbers.endpoint_count()));
+    });
+    auto board = boards.connect();
+    EXPECT_EQ(board->numbers().connect().receive_for(10s), 1);
+  }
+  EXPECT_TRUE(held.expired());
+}
+
 TEST(Pipes, TheServiceMayRefuseAnEndpoint) {
   PipeBoards boards;
   boards.board->numbers().on_connect([](PipeEndpoint<double> end) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/src/node/testing/raw_client.hpp"
 
 namespace rr::testing {
@@ -128,7 +129,8 @@ TEST(Turns, AClientWithLittleToSayWaitsForOneOfMany) {
   for (int i = 0; i < trials; ++i) waits.push_back(other->add(object->resets, 0));
   is_over = true;
   std::nth_element(waits.begin(), waits.begin() + trials / 2, waits.end());
-  EXPECT_LT(waits[trials / 2], clients);
+  // The turns of all are three times as many requests; sanitizers make what is between them longer.
+  EXPECT_LT(waits[trials / 2], slowness() == 1 ? clients : 2 * clients);
 }
 
 // A client that leaves in the middle of its message: the rest is not done.

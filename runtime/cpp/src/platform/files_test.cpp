@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -96,7 +97,7 @@ TEST_F(FilesTest, AreHeldExclusivelyByOneAfterTheOther) {
   std::error_code error;
   std::optional<File> first = open_exclusively(in("lock"), error);
   ASSERT_TRUE(*first) << error.message();
-  bool is_second_in = false;
+  std::atomic<bool> is_second_in = false;
   std::thread other([&] {
     std::error_code failure;
     const File second = open_exclusively(in("lock"), failure);

@@ -266,6 +266,10 @@ void Pipes::send_closed(const Served& end) {
 
 namespace rr {
 
+Skeleton::Places::~Places() {
+  for (const auto& [name, place] : pipes_) place->set_connected(nullptr);
+}
+
 std::shared_ptr<service::PipePlace> Skeleton::Places::pipe(std::string_view name) {
   const MutexLock lock(mutex_);
   const auto found = pipes_.find(name);

@@ -26,6 +26,12 @@ struct ServedObject;
 struct Skeleton::Places {
   static Places& of(const Skeleton& skeleton) { return *skeleton.rr_places_; }
 
+  Places() = default;
+  /// The functions of the object's pipes end with it, though they may hold their pipes.
+  ~Places();
+  Places(const Places&) = delete;
+  Places& operator=(const Places&) = delete;
+
   /// One of them.
   template <class Host>
   struct Place {

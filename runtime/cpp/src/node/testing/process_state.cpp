@@ -55,7 +55,7 @@ std::string ProcessState::text() const {
 }
 
 bool keeps_freed_memory() {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return true;
 #else
   return false;

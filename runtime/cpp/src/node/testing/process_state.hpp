@@ -17,8 +17,8 @@ struct ProcessState {
   [[nodiscard]] std::string text() const;
 };
 
-/// Whether this build keeps memory that was freed, to find who uses it still (address sanitizer):
-/// what is resident then grows up to some hundred megabytes.
+/// Whether this build keeps memory that was freed, to find what uses it still (address sanitizer),
+/// or notes of it (thread sanitizer): what is resident then grows up to some hundred megabytes.
 bool keeps_freed_memory();
 
 /// How much slower than usual this build is.
