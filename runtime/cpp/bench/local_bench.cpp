@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A get over TCP, a local socket and shared memory, in turns in one run, between two processes on
-// the same processor and on different ones.
+// A get, and values of a wire, over TCP, a local socket and shared memory, in turns in one run,
+// between two processes on the same processor and on different ones.
 //   local_bench [rounds] [calls of a round] [spin in microseconds]
 #include <sched.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +25,7 @@
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
 #include "rr/type.hpp"
+#include "rr/wires.hpp"
 #include "runtime/cpp/src/node/testing/child.hpp"
 
 namespace {
@@ -32,9 +37,14 @@ extern const rr::Definition definition;
 extern const rr::ObjectType value_type;
 
 constexpr rr::Parameter blob_parameters[] = {rr::parameter<std::uint32_t>("size")};
-enum Place : std::size_t { value_place, blob_place };
+constexpr rr::Parameter publish_parameters[] = {rr::parameter<std::uint32_t>("size"),
+                                                rr::parameter<std::uint32_t>("count"),
+                                                rr::parameter<std::uint32_t>("pause")};
+enum Place : std::size_t { value_place, blob_place, publish_place, state_place };
 constexpr rr::Member members[] = {rr::property<double>("value", rr::readonly),
-                                  rr::function<rr::Array<std::uint8_t>>("blob", blob_parameters)};
+                                  rr::function<rr::Array<std::uint8_t>>("blob", blob_parameters),
+                                  rr::function<double>("publish", publish_parameters),
+                                  rr::wire<rr::Array<std::uint8_t>>("state", rr::readonly)};
 
 class ValueStub : public virtual rr::Stub {
  public:
@@ -43,6 +53,12 @@ class ValueStub : public virtual rr::Stub {
   rr::Array<std::uint8_t> blob(std::uint32_t size) {
     return rr_call<rr::Array<std::uint8_t>>(members[blob_place], {}, size);
   }
+  // Publishes so many values with pauses in microseconds; the median of the time of one, in
+  // nanoseconds.
+  double publish(std::uint32_t size, std::uint32_t count, std::uint32_t pause) {
+    return rr_call<double>(members[publish_place], {}, size, count, pause);
+  }
+  rr::Wire<rr::Array<std::uint8_t>> state() { return {*this, members[state_place]}; }
 };
 
 constexpr const rr::ObjectType* objects[] = {&value_type};
@@ -50,18 +66,33 @@ constinit const rr::ObjectType value_type{
     "bench.local.Value", definition, {}, members, []() -> std::shared_ptr<rr::Stub> {
       return std::make_shared<ValueStub>();
     }};
-constinit const rr::Definition definition{"bench.local",
-                                          "service bench.local\n"
-                                          "stdver 0.10\n"
-                                          "object Value\n"
-                                          "  property double value [readonly]\n"
-                                          "  function uint8[] blob(uint32 size)\n"
-                                          "end\n",
-                                          {0, 10, 0, 0},
-                                          {},
-                                          {},
-                                          {},
-                                          objects};
+constinit const rr::Definition definition{
+    "bench.local",
+    "service bench.local\n"
+    "stdver 0.10\n"
+    "object Value\n"
+    "  property double value [readonly]\n"
+    "  function uint8[] blob(uint32 size)\n"
+    "  function double publish(uint32 size, uint32 count, uint32 pause)\n"
+    "  wire uint8[] state [readonly]\n"
+    "end\n",
+    {0, 10, 0, 0},
+    {},
+    {},
+    {},
+    objects};
+
+double nanoseconds(Clock::duration time) {
+  return std::chrono::duration<double, std::nano>(time).count();
+}
+
+// One of so many, in order; they are left in another order.
+double at_share(std::vector<double>& times, double share) {
+  const auto place =
+      times.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(times.size() - 1));
+  std::nth_element(times.begin(), place, times.end());
+  return *place;
+}
 
 class Value final : public rr::Skeleton {
  public:
@@ -70,6 +101,13 @@ class Value final : public rr::Skeleton {
     if (member == value_place) {
       const double value = 42.5;
       request.answer(&value);
+    } else if (member == publish_place) {
+      std::uint32_t size = 0;
+      std::uint32_t count = 0;
+      std::uint32_t pause = 0;
+      request.read(size, count, pause);
+      const double median = publish(size, count, std::chrono::microseconds(pause));
+      request.answer(&median);
     } else {
       std::uint32_t size = 0;
       request.read(size);
@@ -82,6 +120,22 @@ class Value final : public rr::Skeleton {
   }
 
  private:
+  // Each value begins with the time of its publishing.
+  double publish(std::uint32_t size, std::uint32_t count, std::chrono::microseconds pause) const {
+    const rr::WireServer<rr::Array<std::uint8_t>> state(*this, members[state_place]);
+    std::vector<double> times;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      rr::Array<std::uint8_t> value(std::size_t{size});
+      const std::span<std::uint8_t> bytes = value.mutate();
+      const Clock::time_point begin = Clock::now();
+      std::memcpy(bytes.data(), &begin, sizeof begin);
+      state.set_in(value);
+      times.push_back(nanoseconds(Clock::now() - begin));
+      std::this_thread::sleep_for(pause);
+    }
+    return at_share(times, 0.5);
+  }
+
   rr::Array<std::uint8_t> blob_;
 };
 
@@ -131,15 +185,10 @@ struct Way {
       } else {
         (*client)->blob(size);
       }
-      times.push_back(std::chrono::duration<double, std::nano>(Clock::now() - begin).count());
+      times.push_back(nanoseconds(Clock::now() - begin));
     }
   }
-  [[nodiscard]] double at(double share) {
-    const auto place =
-        times.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(times.size() - 1));
-    std::nth_element(times.begin(), place, times.end());
-    return *place;
-  }
+  [[nodiscard]] double at(double share) { return at_share(times, share); }
 };
 
 Way way_of(std::string name, const std::string& folder, const std::string& url, bool shares,
@@ -147,6 +196,107 @@ Way way_of(std::string name, const std::string& folder, const std::string& url, 
   Way way{std::move(name), std::make_unique<rr::Node>(options(folder, shares, spin)), nullptr};
   way.client = std::make_unique<rr::Client<ValueStub>>(way.node->connect<ValueStub>(url));
   return way;
+}
+
+using Bytes = rr::Array<std::uint8_t>;
+
+// How old a value is.
+double age_of(const Bytes& value) {
+  const Clock::time_point now = Clock::now();
+  Clock::time_point published;
+  std::memcpy(&published, value.data(), sizeof published);
+  return nanoseconds(now - published);
+}
+
+// Ages of values that a function gets, or that are looked for all the time.
+void measure_ages(Way& way, bool is_woken, std::uint32_t size, int count, std::uint32_t pause) {
+  auto state = (*way.client)->state().connect();
+  std::mutex mutex;
+  rr::Subscription subscription;
+  if (is_woken) {
+    subscription = state.on_in([&](const Bytes& value, const rr::TimeSpec& /*time*/) {
+      const double age = age_of(value);
+      const std::lock_guard lock(mutex);
+      way.times.push_back(age);
+    });
+  }
+  std::atomic<bool> is_over{false};
+  std::thread publisher([&] {
+    (*way.client)->publish(size, static_cast<std::uint32_t>(count), pause);
+    is_over = true;
+  });
+  rr::TimeSpec seen;
+  while (!is_woken && !is_over) {
+    const auto value = state.try_in();
+    if (!value || value->time == seen) continue;
+    way.times.push_back(age_of(value->value));
+    seen = value->time;
+  }
+  publisher.join();
+  state.close();
+}
+
+void compare_wires(std::vector<Way>& ways, bool is_split, int rounds, int count) {
+  for (const bool is_woken : {true, false}) {
+    if (!is_woken && !is_split) continue;  // who looks all the time would keep the other from it
+    for (int round = 0; round < rounds; ++round) {
+      for (Way& way : ways) measure_ages(way, is_woken, 200, count, 300);
+    }
+    const double tcp = ways.front().at(0.5);
+    for (Way& way : ways) {
+      std::printf("%-5s %-7s %6s 200 B  p50 %8.2f us  p99 %8.2f us  %5.2f of tcp\n",
+                  is_split ? "split" : "same", way.name.c_str(), is_woken ? "woken" : "polled",
+                  way.at(0.5) / 1000, way.at(0.99) / 1000, way.at(0.5) / tcp);
+      way.times.clear();
+    }
+    std::fflush(stdout);
+  }
+}
+
+// What publishing costs, and when the last of the readers has the value.
+void compare_pictures(const std::string& folder, const std::vector<std::string>& urls,
+                      bool is_split, int rounds) {
+  constexpr std::uint32_t size = 10'000'000;
+  constexpr std::uint32_t pictures = 5;
+  for (const int count : {1, 8}) {
+    for (std::size_t place = 0; place < urls.size(); ++place) {
+      const bool shares = place == 2;
+      std::vector<Way> readers;
+      for (int i = 0; i < count; ++i) {
+        readers.push_back(way_of("reader", folder, urls[place], shares, 0));
+      }
+      std::mutex mutex;
+      std::vector<double> ages;
+      std::vector<rr::WireConnection<Bytes>> wires;
+      std::vector<rr::Subscription> subscriptions;
+      for (Way& reader : readers) {
+        wires.push_back((*reader.client)->state().connect());
+        subscriptions.push_back(
+            wires.back().on_in([&](const Bytes& value, const rr::TimeSpec& /*time*/) {
+              const double age = age_of(value);
+              const std::lock_guard lock(mutex);
+              if (value.size() == size) ages.push_back(age);
+            }));
+      }
+      (*readers.front().client)->publish(size, 2, 200'000);
+      {
+        const std::lock_guard lock(mutex);
+        ages.clear();
+      }
+      std::vector<double> times;
+      for (int round = 0; round < rounds; ++round) {
+        times.push_back((*readers.front().client)->publish(size, pictures, 200'000));
+      }
+      for (auto& wire : wires) wire.close();
+      const std::lock_guard lock(mutex);
+      constexpr std::array<const char*, 3> names{"tcp", "local", "shm"};
+      std::printf("%-5s %-7s 10 MB to %d: set_in %8.0f us  age p50 %8.0f us  of all %8.0f us\n",
+                  is_split ? "split" : "same", names.at(place), count, at_share(times, 0.5) / 1000,
+                  ages.empty() ? 0 : at_share(ages, 0.5) / 1000,
+                  ages.empty() ? 0 : at_share(ages, 1) / 1000);
+      std::fflush(stdout);
+    }
+  }
 }
 
 void compare(const std::string& folder, bool is_split, int rounds, int calls, int spin) {
@@ -157,8 +307,8 @@ void compare(const std::string& folder, bool is_split, int rounds, int calls, in
       "rr+local:///?nodeid=" + ready.substr(ready.find(' ') + 1) + "&service=value";
   pin_to(0);
   std::vector<Way> ways;
-  ways.push_back(
-      way_of("tcp", folder, "rr+tcp://127.0.0.1:" + port + "/?service=value", false, spin));
+  const std::string tcp_url = "rr+tcp://127.0.0.1:" + port + "/?service=value";
+  ways.push_back(way_of("tcp", folder, tcp_url, false, spin));
   ways.push_back(way_of("local", folder, local, false, spin));
   ways.push_back(way_of("shm", folder, local, true, spin));
   for (const std::uint32_t size : {0U, 10'000U, 1'000'000U}) {
@@ -179,6 +329,8 @@ void compare(const std::string& folder, bool is_split, int rounds, int calls, in
     }
     std::fflush(stdout);
   }
+  compare_wires(ways, is_split, rounds, std::min(calls, 1000));
+  compare_pictures(folder, {tcp_url, local, local}, is_split, rounds);
 }
 
 }  // namespace

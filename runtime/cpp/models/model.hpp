@@ -37,5 +37,6 @@ std::span<const Model> newest_models();
 std::span<const Model> strand_models();
 std::span<const Model> exchange_models();
 std::span<const Model> ring_models();
+std::span<const Model> slot_models();
 
 }  // namespace rr::models

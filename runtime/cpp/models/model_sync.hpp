@@ -280,6 +280,12 @@ struct ModelSync {
       condition.wait_for_a_while(mutex, source);
     }
   }
+  static void fence_release() {
+    if (fault != Fault::relaxed) rl::ctx().atomic_thread_fence_release();
+  }
+  static void fence_acquire() {
+    if (fault != Fault::relaxed) rl::ctx().atomic_thread_fence_acquire();
+  }
   static Time now() { return Time{}; }
   static Time coarse_now() { return Time{}; }
   static void yield(Source source = Source::current()) { rl::ctx().yield(1, info_of(source)); }

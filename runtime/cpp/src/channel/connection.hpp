@@ -67,6 +67,9 @@ enum class Priority : std::uint8_t {
   fixed,   ///< nothing, and nothing overtakes it or what waits before it
 };
 
+class SlotReader;
+class SlotWriter;
+
 /// Carries messages to and from one other node. Any thread may send.
 ///
 /// Large because it is all that sessions of both sides and of all channels need: terms, sending,
@@ -99,6 +102,15 @@ class Connection {
   [[nodiscard]] const std::shared_ptr<Account>& account() const { return account_; }
   /// Before the connection is used.
   void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
+
+  // Memories of wires that the service's side writes and the client's side reads.
+  /// Whether both sides pass such memories.
+  [[nodiscard]] virtual bool shares_slots() const { return false; }
+  /// By the service's side: gives one to the other side, which has it before what is sent
+  /// afterwards. False when that is not possible; then it is to be told otherwise.
+  [[nodiscard]] virtual bool pass_slots(const SlotWriter& /*slots*/) { return false; }
+  /// By the client's side, from Receiver::take_answer(): takes one that was passed; null for none.
+  virtual std::shared_ptr<SlotReader> take_slots(std::uint64_t /*id*/) { return nullptr; }
 
   /// The threads that what the other side asks may take; null where nobody counts them, as for a
   /// client's connection.

@@ -94,10 +94,12 @@ void check_create_connection(std::span<const std::byte> answer, const Url& url,
 namespace {
 
 std::vector<std::byte> request_of(EntryType type, std::string_view member, const Agreed& agreed,
-                                  const NodeOptions& options) {
+                                  const NodeOptions& options, bool has_slots = false) {
   Writer writer;
   writer.reset(agreed.agreement.version);
-  writer.entry({.type = type, .member = member}, 0, writer.position());
+  const std::size_t end = writer.position();
+  if (has_slots) write_slots_level(writer);
+  writer.entry({.type = type, .member = member}, has_slots ? 1 : 0, end);
   writer.message({.sender_node = options.id, .receiver_node = agreed.remote_node}, 1);
   return writer.copy();
 }
@@ -128,16 +130,19 @@ std::uint32_t check_capability(std::span<const std::byte> answer, std::string_vi
 }
 
 std::vector<std::byte> share_memory_request(const Agreed& agreed, const NodeOptions& options) {
-  return request_of(EntryType::stream_op, share_memory, agreed, options);
+  return request_of(EntryType::stream_op, share_memory, agreed, options, wants_slots(options));
 }
 
-bool check_share_memory(std::span<const std::byte> answer, const Agreed& agreed,
-                        const NodeOptions& options, const std::string& place) {
+std::optional<SharedTerms> check_share_memory(std::span<const std::byte> answer,
+                                              const Agreed& agreed, const NodeOptions& options,
+                                              const std::string& place) {
   const auto message = std::make_unique<Message>();
   Entry entry;
   const Asked asked{share_memory, EntryType::stream_op_ret, agreed.agreement.standard_strings};
   read_answer(answer, asked, options, place, *message, entry);
-  return entry.error == 0;
+  if (entry.error != 0) return std::nullopt;
+  Decoder decoder(message->version, &message->strings);
+  return SharedTerms{wants_slots(options) && has_slots_level(decoder, entry)};
 }
 
 std::vector<std::byte> start_tls_request(const Url& url, bool is_mutual) {

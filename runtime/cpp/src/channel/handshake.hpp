@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -55,9 +56,17 @@ std::uint32_t check_capability(std::span<const std::byte> answer, std::string_vi
                                const std::string& place);
 /// What a client asks for memory that both sides share.
 std::vector<std::byte> share_memory_request(const Agreed& agreed, const NodeOptions& options);
-/// Whether the answer to it brings some. Throws rr::Error.
-bool check_share_memory(std::span<const std::byte> answer, const Agreed& agreed,
-                        const NodeOptions& options, const std::string& place);
+/// What comes with such memory.
+struct SharedTerms {
+  bool has_slots = false;  ///< for wires
+};
+/// What the answer to it brings; nothing when there is no memory. Throws rr::Error.
+std::optional<SharedTerms> check_share_memory(std::span<const std::byte> answer,
+                                              const Agreed& agreed, const NodeOptions& options,
+                                              const std::string& place);
+/// Whether a node wants slots for its wires, where it shares memory: what a tap records has to come
+/// by messages.
+[[nodiscard]] inline bool wants_slots(const NodeOptions& options) { return options.tap == nullptr; }
 
 /// What a client says before everything else to change over to TLS (04, section 6).
 std::vector<std::byte> start_tls_request(const Url& url, bool is_mutual);

@@ -131,6 +131,30 @@ TEST_F(HandshakeTest, AnswersThatAreWrongAreRefused) {
             ErrorCode::connection_error);
 }
 
+TEST_F(HandshakeTest, MemoryIsAskedForWithSlots) {
+  Agreed agreed;
+  agreed.remote_node = server;
+  Read read(share_memory_request(agreed, options_));
+  ASSERT_TRUE(read.is_whole);
+  EXPECT_EQ(read.entry.member, share_memory);
+  Decoder decoder(read.message.version, &read.message.strings);
+  EXPECT_TRUE(has_slots_level(decoder, read.entry));
+
+  const auto without =
+      check_share_memory(answer(share_memory, ErrorCode::none, "board"), agreed, options_, "here");
+  ASSERT_TRUE(without);
+  EXPECT_FALSE(without->has_slots);
+  EXPECT_FALSE(check_share_memory(answer(share_memory, ErrorCode::out_of_system_resource, "board"),
+                                  agreed, options_, "here"));
+  Writer writer;
+  writer.reset(MessageVersion::v2);
+  const std::size_t end = writer.position();
+  write_slots_level(writer);
+  writer.entry({.type = EntryType::stream_op_ret, .member = share_memory}, 1, end);
+  writer.message({}, 1);
+  EXPECT_TRUE(check_share_memory(writer.copy(), agreed, options_, "here")->has_slots);
+}
+
 TEST_F(HandshakeTest, TlsIsAskedForAndAnswered) {
   Read mutual(start_tls_request(url, true));
   ASSERT_TRUE(mutual.is_whole);

@@ -244,12 +244,15 @@ void Opening::agree() {
 
 // The other side has changed over with its answer, so that there is no way back.
 void Opening::open_memory() {
-  if (!check_share_memory(answer_, agreed_, options_, place_)) return;
+  const auto terms = check_share_memory(answer_, agreed_, options_, place_);
+  if (!terms) return;
   std::error_code error;
   SharedRings rings = SharedRings::open(memory_, error);
   if (!rings) fail(place_ + " shares memory that cannot be used: " + error.message());
-  agreed_.carrier =
+  auto carrier =
       std::make_unique<SharedCarrier>(std::move(rings), false, socket_.get(), options_.spin);
+  if (terms->has_slots) carrier->use_slots();
+  agreed_.carrier = std::move(carrier);
 }
 
 std::optional<Agreed> Opening::finish() {

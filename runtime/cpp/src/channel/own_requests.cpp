@@ -5,6 +5,7 @@
 #include <span>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/handshake.hpp"
 #include "runtime/cpp/src/channel/operations.hpp"
 
 namespace rr::channel {
@@ -13,6 +14,17 @@ void write_codes(Writer& writer, std::string_view name, std::span<const std::uin
   const std::size_t end = writer.position();
   writer.prepend_bytes(codes.data(), codes.size_bytes());
   writer.element(name, ElementType::uint32, {}, static_cast<std::uint32_t>(codes.size()), end);
+}
+
+void write_slots_level(Writer& writer) { write_codes(writer, slots_element, {&slots_level, 1}); }
+
+bool has_slots_level(Decoder& decoder, const Entry& entry) {
+  Element element;
+  if (!find_element(decoder, entry.elements, entry.element_count, slots_element, element)) {
+    return false;
+  }
+  const auto level = read_codes(element);
+  return level && level->size() == 1 && level->front() == slots_level;
 }
 
 std::uint32_t write_error(Writer& writer, std::string_view name, std::string_view message) {
@@ -92,17 +104,28 @@ OwnAnswer OwnRequests::answer_stream_op(const Message& message, const Entry& ent
     return answer_create_connection(message, entry);
   }
   if (is_start_tls && side_.layers.can_start_tls()) return answer_start_tls(message, entry);
-  const bool shares_memory = entry.member == share_memory && side_.may_share;
+  if (entry.member == share_memory && side_.may_share) return answer_share_memory(message, entry);
   if (is_start_tls) {
     write_refusal(message, entry, ErrorCode::connection_error, "Server certificate not loaded");
-  } else if (entry.member != get_remote_node_id && !shares_memory) {
+  } else if (entry.member != get_remote_node_id) {
     write_refusal(message, entry, ErrorCode::protocol_error, "Invalid Stream Operation");
   } else {
     writer_.reset(side_.version);
     writer_.entry(answer_header(entry), 0, writer_.position());
     writer_.message(header_to(message), 1);
   }
-  return {.is_answer = true, .shares_memory = shares_memory};
+  return {.is_answer = true};
+}
+
+OwnAnswer OwnRequests::answer_share_memory(const Message& message, const Entry& entry) {
+  Decoder decoder(message.version, &message.strings);
+  const bool has_slots = wants_slots(side_.options) && has_slots_level(decoder, entry);
+  writer_.reset(side_.version);
+  const std::size_t end = writer_.position();
+  if (has_slots) write_slots_level(writer_);
+  writer_.entry(answer_header(entry), has_slots ? 1 : 0, end);
+  writer_.message(header_to(message), 1);
+  return {.is_answer = true, .shares_memory = true, .has_slots = has_slots};
 }
 
 void OwnRequests::write_refusal(const Message& message, const Entry& entry, ErrorCode code,

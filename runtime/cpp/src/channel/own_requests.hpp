@@ -37,6 +37,7 @@ struct OwnAnswer {
   bool begins_tls = false;
   bool is_mutual = false;      ///< the client wants its certificate to be asked for
   bool shares_memory = false;  ///< with a memory; where there is none refuse() has another answer
+  bool has_slots = false;      ///< and wires may have slots
 };
 
 /// Writes answers to entries that are is_own().
@@ -53,6 +54,7 @@ class OwnRequests {
   OwnAnswer answer_stream_op(const Message& message, const Entry& entry);
   OwnAnswer answer_create_connection(const Message& message, const Entry& entry);
   OwnAnswer answer_start_tls(const Message& message, const Entry& entry);
+  OwnAnswer answer_share_memory(const Message& message, const Entry& entry);
   OwnAnswer answer_capability(const Message& message, const Entry& entry);
   OwnAnswer answer_test(const Message& message, const Entry& entry);
   void write_refusal(const Message& message, const Entry& entry, ErrorCode code,

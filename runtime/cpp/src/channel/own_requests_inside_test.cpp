@@ -1,17 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/tap.hpp"
 #include "runtime/cpp/src/channel/connection_tap.hpp"
+#include "runtime/cpp/src/channel/handshake.hpp"
 #include "runtime/cpp/src/channel/operations.hpp"
 #include "runtime/cpp/src/channel/own_requests.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
 
 namespace rr::channel {
 namespace {
+
+class NoTap final : public Tap {
+ public:
+  std::uint32_t opened(const ConnectionOpened& /*connection*/) override { return 0; }
+  void agreed(std::uint32_t /*connection*/, const ConnectionAgreed& /*agreement*/) override {}
+  std::uint64_t message(std::uint32_t /*connection*/, Direction /*direction*/,
+                        std::span<const Piece> /*message*/) override {
+    return 0;
+  }
+  void replaced(std::uint32_t /*connection*/, std::uint64_t /*message*/) override {}
+  void closed(std::uint32_t /*connection*/, ErrorCode /*code*/,
+              std::string_view /*reason*/) override {}
+  void definition(std::string_view /*text*/) override {}
+};
 
 // A service's side of a connection that nobody has said anything on.
 class OwnRequestsTest : public ::testing::Test {
@@ -93,6 +112,32 @@ TEST_F(OwnRequestsTest, MemoryIsSharedWhereThatIsAllowed) {
   EXPECT_TRUE(answer(EntryType::stream_op, share_memory).shares_memory);
   EXPECT_EQ(error(), ErrorCode::out_of_system_resource);
   EXPECT_EQ(text("errorstring"), "not today");
+}
+
+TEST_F(OwnRequestsTest, WiresHaveSlotsWhereBothSidesWantThem) {
+  may_share_ = true;
+  const auto ask = [&](std::uint32_t level) {
+    Writer writer;
+    writer.reset(MessageVersion::v2);
+    const std::size_t end = writer.position();
+    write_codes(writer, slots_element, {&level, 1});
+    writer.entry({.type = EntryType::stream_op, .member = share_memory}, 1, end);
+    writer.message({.sender_node = client_}, 1);
+    return answer(writer.copy());
+  };
+  const auto has_slots = [&] {
+    Decoder decoder(answered_.version, &answered_.strings);
+    return has_slots_level(decoder, entry_);
+  };
+  EXPECT_TRUE(ask(slots_level).has_slots);
+  EXPECT_TRUE(has_slots());
+  EXPECT_FALSE(ask(slots_level + 1).has_slots);
+  EXPECT_FALSE(has_slots());
+  EXPECT_TRUE(wants_slots(options_));
+  options_.tap = std::make_shared<NoTap>();
+  EXPECT_FALSE(wants_slots(options_));
+  EXPECT_FALSE(ask(slots_level).has_slots) << "a recording has to have the values";
+  EXPECT_FALSE(has_slots());
 }
 
 TEST_F(OwnRequestsTest, TheFirstConnectionIsAgreedOn) {

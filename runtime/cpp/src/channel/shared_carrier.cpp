@@ -11,6 +11,7 @@ namespace {
 
 // Of one receive at the socket. Another side that rings without end is looked at again later.
 constexpr int most_looks = 16;
+constexpr std::ptrdiff_t bells_at_once = 256;
 // As a receive on a socket: after this time a thread looks at its deadline, and whether it is to do
 // something else.
 constexpr Milliseconds longest_sleep{100};
@@ -38,6 +39,7 @@ SharedCarrier::SharedCarrier(SharedRings rings, bool is_server, int socket,
       socket_(socket),
       spin_(allowed_spin(spin)),
       charge_(std::move(charge)),
+      is_server_(is_server),
       is_watching_(is_server) {}
 
 // Sending
@@ -111,14 +113,42 @@ std::ptrdiff_t SharedCarrier::receive(Frame& /*message*/, bool /*may_block*/) {
 // written before the end is received before it.
 void SharedCarrier::look_at_socket(Look look) {
   for (int left = most_looks; left != 0; --left) {
-    std::array<std::byte, 256> bells;
-    const std::ptrdiff_t size = platform::receive(socket_, bells, platform::Wait::none);
+    const std::size_t passed = passed_.size();
+    const std::ptrdiff_t size = take_bells();
     if (size == 0 || size == platform::broken) has_ended_ = true;
     if (size <= 0) return;
     has_taken_bells_ = true;
-    if (look == Look::once && size != std::ptrdiff_t{bells.size()}) return;
+    // What is received ends at a handle.
+    const bool may_have_more = size == bells_at_once || passed_.size() != passed;
+    if (look == Look::once && !may_have_more) return;
   }
   note_event(look == Look::until_end);
+}
+
+// A server takes no handles: the system closes those that come.
+std::ptrdiff_t SharedCarrier::take_bells() {
+  std::array<std::byte, bells_at_once> bells;
+  if (is_server_ || !has_slots_) return platform::receive(socket_, bells, platform::Wait::none);
+  platform::Descriptor handle;
+  const std::ptrdiff_t size = platform::receive_with_handle(socket_, bells, handle);
+  if (handle) passed_.add(handle);
+  return size;
+}
+
+bool SharedCarrier::pass_slots(const SlotWriter& slots) const {
+  constexpr std::array<std::byte, 1> bell{};
+  return is_server_ && has_slots_ &&
+         platform::send_with_handle(socket_, bell, slots.handle()) == std::ptrdiff_t{bell.size()};
+}
+
+std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id) {
+  for (int left = most_looks; left != 0; --left) {
+    if (auto slots = passed_.take(id)) return slots;
+    must_look_ = Look::none;
+    look_at_socket(Look::until_end);
+    if (must_look_ == Look::none) break;  // that was all
+  }
+  return passed_.take(id);
 }
 
 bool SharedCarrier::rest() {

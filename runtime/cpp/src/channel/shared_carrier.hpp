@@ -4,19 +4,22 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/carrier.hpp"
+#include "runtime/cpp/src/channel/passed_slots.hpp"
 #include "runtime/cpp/src/channel/shared_rings.hpp"
 
 namespace rr::channel {
 
 /// Carries the bytes of a connection through two rings in shared memory. Its local socket stays:
 /// the end of either side shows there, and its bytes are a bell for a reactor that watches it. What
-/// a bell's byte says is not looked at.
+/// a bell's byte says is not looked at. Memories of wires come with such bytes.
 class SharedCarrier final : public Carrier {
  public:
   /// `spin`: how long a receive that blocks looks again and again before it sleeps, where the other
@@ -53,6 +56,16 @@ class SharedCarrier final : public Carrier {
   void wait(Time deadline);
   /// Any thread: whoever sleeps in a receive is to look at the socket.
   void interrupt();
+  /// Before it is used by several threads: memories of wires are passed, too.
+  void use_slots() { has_slots_ = true; }
+  /// Any thread.
+  [[nodiscard]] bool has_slots() const { return has_slots_; }
+  /// By the server, any thread: gives the client a memory, which is there before all that is sent
+  /// afterwards. False when the socket does not take it.
+  [[nodiscard]] bool pass_slots(const SlotWriter& slots) const;
+  /// By the client, with the read lease: takes one that the server has passed; null for none.
+  std::unique_ptr<SlotReader> take_slots(std::uint64_t id);
+
   /// Any thread: the same for the other side, which may sleep where it does not see the socket's
   /// end.
   void interrupt_other() { writer_.interrupt_reader(); }
@@ -61,6 +74,7 @@ class SharedCarrier final : public Carrier {
   std::ptrdiff_t read(std::span<std::byte> room);
   enum class Look : std::uint8_t { none, once, until_end };
   void look_at_socket(Look look);
+  std::ptrdiff_t take_bells();
   void wait_for(Clock::duration time);
   bool spin();
   void ring() const;
@@ -71,12 +85,15 @@ class SharedCarrier final : public Carrier {
   const int socket_;
   const std::chrono::microseconds spin_;
   const Charge charge_;
+  const bool is_server_;
+  bool has_slots_ = false;
   std::atomic<Look> must_look_{Look::once};
   std::atomic<bool> is_interrupted_{false};
   std::atomic<bool> is_cheated_{false};  // an index of the other side was wrong
 
   // With the read lease.
   bool has_ended_ = false;
+  PassedSlots passed_;
   bool has_taken_bells_ = false;
   bool is_watching_;
   unsigned vain_spins_ = 0;  // in a row, at most 8

@@ -18,7 +18,7 @@ namespace {
 using std::chrono_literals::operator""s;
 using std::chrono_literals::operator""us;
 
-constexpr std::size_t ring_size = 4096;
+constexpr std::size_t carried_ring_size = 4096;
 
 class SharedCarrierTest : public ::testing::Test {
  protected:
@@ -27,7 +27,7 @@ class SharedCarrierTest : public ::testing::Test {
     ASSERT_FALSE(platform::make_pair(client_socket_, server_socket_));
     platform::Descriptor handle;
     std::error_code error;
-    SharedRings rings = SharedRings::make(ring_size, handle, error);
+    SharedRings rings = SharedRings::make(carried_ring_size, handle, error);
     ASSERT_TRUE(rings) << error.message();
     memory_ = platform::map_shared_memory(handle, 1 << 20, error);
     client_ = std::make_unique<SharedCarrier>(SharedRings::open(handle, error), false,
@@ -40,7 +40,7 @@ class SharedCarrierTest : public ::testing::Test {
     return carrier.send({&piece, 1});
   }
   static std::string received(SharedCarrier& carrier, bool may_block = false) {
-    std::vector<std::byte> room(2 * ring_size);
+    std::vector<std::byte> room(2 * carried_ring_size);
     const std::ptrdiff_t size = carrier.receive(room, may_block);
     if (size == platform::nothing_now) return "nothing";
     if (size == platform::broken) return "broken";
@@ -68,6 +68,36 @@ TEST_F(SharedCarrierTest, CarriesBytesInBothDirections) {
   EXPECT_EQ(received(*server_), "nothing");
   Carrier& carrier = *client_;
   EXPECT_EQ(carrier.shared(), client_.get());
+}
+
+TEST_F(SharedCarrierTest, PassesMemoriesOfWiresWithBells) {
+  const auto make = [](std::uint64_t id) {
+    std::error_code error;
+    return SlotWriter::make(SlotSizes::for_value(100), id, error);
+  };
+  const auto one = make(1);
+  EXPECT_FALSE(server_->has_slots());
+  EXPECT_FALSE(server_->pass_slots(*one)) << "the client does not know them";
+  server_->use_slots();
+  client_->use_slots();
+  EXPECT_TRUE(client_->has_slots());
+  EXPECT_FALSE(client_->pass_slots(*one));
+  EXPECT_TRUE(server_->pass_slots(*one));
+  // More than one look takes; bells are among them.
+  for (int i = 0; i < 40; ++i) {
+    constexpr std::array<std::byte, 1> bell{};
+    platform::send(server_socket_.get(), bell);
+    EXPECT_TRUE(server_->pass_slots(*one)) << i;
+  }
+  const auto two = make(2);
+  EXPECT_TRUE(server_->pass_slots(*two));
+  const auto taken = client_->take_slots(2);
+  ASSERT_NE(taken, nullptr);
+  EXPECT_EQ(taken->id(), 2U);
+  EXPECT_NE(client_->take_slots(1), nullptr);
+  EXPECT_EQ(client_->take_slots(3), nullptr);
+  EXPECT_EQ(received(*client_), "nothing");
+  EXPECT_TRUE(client_->has_taken_bells());
 }
 
 TEST_F(SharedCarrierTest, RingsOnceForAServerThatWatches) {
@@ -105,18 +135,18 @@ TEST_F(SharedCarrierTest, SleepsUntilThereIsSomething) {
 }
 
 TEST_F(SharedCarrierTest, AFullRingRingsForRoom) {
-  const std::string much(ring_size + 100, 'x');
-  EXPECT_EQ(send(*client_, much), static_cast<std::ptrdiff_t>(ring_size));
+  const std::string much(carried_ring_size + 100, 'x');
+  EXPECT_EQ(send(*client_, much), static_cast<std::ptrdiff_t>(carried_ring_size));
   EXPECT_EQ(send(*client_, "more"), 0);
   EXPECT_EQ(bells(client_socket_), platform::nothing_now);
-  EXPECT_EQ(received(*server_), std::string(ring_size, 'x'));
+  EXPECT_EQ(received(*server_), std::string(carried_ring_size, 'x'));
   EXPECT_EQ(bells(client_socket_), 1);
   EXPECT_EQ(send(*client_, "more"), 4);
   EXPECT_EQ(received(*server_), "more");
 }
 
 TEST_F(SharedCarrierTest, WaitsForRoom) {
-  const std::string much(ring_size, 'x');
+  const std::string much(carried_ring_size, 'x');
   send(*client_, much);
   std::thread other([&] {
     EXPECT_EQ(received(*server_, true), much);
@@ -190,14 +220,14 @@ TEST_F(SharedCarrierTest, SaysThatBellsWereTaken) {
 
 TEST_F(SharedCarrierTest, AWrongIndexEndsIt) {
   EXPECT_EQ(server_->failure(), "");
-  const std::uint64_t wrong = ring_size + 1;
+  const std::uint64_t wrong = carried_ring_size + 1;
   std::memcpy(memory_.bytes() + 0x100, &wrong, sizeof wrong);  // written by the client
   EXPECT_EQ(received(*server_), "broken");
   EXPECT_NE(server_->failure(), "");
 
   EXPECT_EQ(client_->failure(), "");
   std::memcpy(memory_.bytes() + 0x140, &wrong, sizeof wrong);  // taken by the server
-  EXPECT_EQ(send(*client_, std::string(ring_size, 'x')), platform::broken);
+  EXPECT_EQ(send(*client_, std::string(carried_ring_size, 'x')), platform::broken);
   EXPECT_NE(client_->failure(), "");
 }
 
@@ -206,7 +236,7 @@ TEST_F(SharedCarrierTest, SpinsNoLongerThanItMay) {
       [] {
         platform::Descriptor handle;
         std::error_code error;
-        return SharedRings::make(ring_size, handle, error);
+        return SharedRings::make(carried_ring_size, handle, error);
       }(),
       true, server_socket_.get(), 50us);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(received(spinning, true), "nothing");

@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/shared_rings.hpp"
 
-#include <array>
 #include <bit>
 #include <cstring>
 #include <new>
 #include <utility>
+
+#include "runtime/cpp/src/channel/shared_header.hpp"
 
 namespace rr::channel {
 namespace {
 
 using Words = SharedRing::Words;
 
-// What is at the beginning, written once, before anybody else has the memory.
-struct Header {
-  std::array<char, 8> magic;
-  std::uint32_t version;
-  std::uint32_t kind;
-  std::uint32_t ring_size;
-  std::uint32_t data_at;
-};
-static_assert(sizeof(Header) == 24 && std::is_trivially_copyable_v<Header>);
-
-constexpr std::array<char, 8> magic = {'R', 'R', 'S', 'H', 'A', 'R', 'E', 'D'};
-constexpr std::uint32_t version = 1;
-constexpr std::uint32_t kind_of_rings = 1;
 constexpr std::size_t to_server_at = 0x100;
 constexpr std::size_t to_client_at = 0x200;
-constexpr std::size_t data_at = 0x1000;
+constexpr std::size_t data_at = SharedHeader::first_data;
 static_assert(to_server_at + sizeof(Words) == to_client_at &&
               to_client_at + sizeof(Words) <= data_at);
 
@@ -61,8 +49,7 @@ SharedRings SharedRings::make(std::size_t ring_size, platform::Descriptor& handl
   platform::SharedMemory memory =
       platform::make_shared_memory(memory_size(ring_size), handle, error);
   if (!memory) return {};
-  const Header header{magic, version, kind_of_rings, static_cast<std::uint32_t>(ring_size),
-                      static_cast<std::uint32_t>(data_at)};
+  const SharedHeader header = SharedHeader::of(SharedKind::rings, ring_size);
   std::memcpy(memory.bytes(), &header, sizeof header);
   new (memory.bytes() + to_server_at) Words;
   new (memory.bytes() + to_client_at) Words;
@@ -76,17 +63,14 @@ SharedRings SharedRings::open(const platform::Descriptor& handle, std::error_cod
   platform::SharedMemory memory =
       platform::map_shared_memory(handle, memory_size(largest_ring), error);
   if (!memory) return {};
-  Header header{};
-  if (memory.size() >= data_at) std::memcpy(&header, memory.bytes(), sizeof header);
-  const bool is_right = header.magic == magic && header.version == version &&
-                        header.kind == kind_of_rings && header.data_at == data_at &&
-                        is_ring_size(header.ring_size) &&
-                        memory.size() == memory_size(header.ring_size);
+  const auto header = SharedHeader::read(memory);
+  const bool is_right = header.is_of(SharedKind::rings) && is_ring_size(header.area_size) &&
+                        memory.size() == memory_size(header.area_size);
   if (!is_right) {
     error = std::make_error_code(std::errc::invalid_argument);
     return {};
   }
-  return {std::move(memory), header.ring_size};
+  return {std::move(memory), header.area_size};
 }
 
 }  // namespace rr::channel

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,8 +82,9 @@ struct Sharing {
       return size != platform::nothing_now;
     });
     if (size <= 0) return false;
-    return check_share_memory(std::span(room).first(static_cast<std::size_t>(size)), agreed_,
-                              *options_, place);
+    terms_ = check_share_memory(std::span(room).first(static_cast<std::size_t>(size)), agreed_,
+                                *options_, place);
+    return terms_.has_value();
   }
   // The client's side.
   std::unique_ptr<SharedCarrier> open() {
@@ -103,6 +105,7 @@ struct Sharing {
   std::shared_ptr<StreamConnection> server_;
   std::shared_ptr<TestReceiver> receiver_;
   platform::Descriptor handle_;
+  std::optional<SharedTerms> terms_;
 };
 
 class SharingTest : public ::testing::Test, public Sharing {
@@ -173,6 +176,56 @@ TEST_F(SharingTest, HappensOnce) {
   ASSERT_GT(size, 0);
   EXPECT_FALSE(check_share_memory(std::span(room).first(static_cast<std::size_t>(size)), agreed_,
                                   *options_, place));
+}
+
+// The memory is there before what is sent after it.
+TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
+  accept();
+  ASSERT_TRUE(ask());
+  EXPECT_TRUE(terms_->has_slots);
+  EXPECT_TRUE(server_->shares_slots());
+  const auto client = open();
+  client->use_slots();
+  std::error_code error;
+  const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
+  ASSERT_NE(slots, nullptr);
+  EXPECT_TRUE(server_->pass_slots(*slots));
+  const auto taken = client->take_slots(7);
+  ASSERT_NE(taken, nullptr);
+  EXPECT_EQ(taken->id(), 7U);
+  EXPECT_EQ(server_->take_slots(7), nullptr);
+}
+
+TEST_F(SharingTest, OfAPeerThatKnowsNoSlotsNothingChanges) {
+  accept();
+  Writer writer;
+  writer.reset(MessageVersion::v2);
+  writer.entry({.type = EntryType::stream_op, .member = share_memory}, 0, writer.position());
+  writer.message({.sender_node = options_->id, .receiver_node = options_->id}, 1);
+  sockets_.send(writer.copy());
+  ASSERT_TRUE(receive_answer());
+  EXPECT_FALSE(terms_->has_slots);
+  EXPECT_FALSE(server_->shares_slots());
+  std::error_code error;
+  const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
+  EXPECT_FALSE(server_->pass_slots(*slots));
+}
+
+TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {
+  accept();
+  ASSERT_TRUE(ask());
+  const auto client = open();
+  std::error_code error;
+  const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
+  constexpr std::array<std::byte, 1> bell{};
+  for (int i = 0; i < 100; ++i) {
+    platform::send_with_handle(sockets_.own(), bell, slots->handle());
+  }
+  const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req);
+  const platform::Buffer piece{asked.data(), asked.size()};
+  client->send({&piece, 1});
+  EXPECT_TRUE(comes_true([&] { return receiver_->handled == 1; }));
+  EXPECT_EQ(server_->take_slots(7), nullptr);
 }
 
 TEST_F(SharingTest, NothingMayFollowTheRequest) {

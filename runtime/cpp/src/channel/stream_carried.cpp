@@ -124,6 +124,21 @@ void StreamConnection::share_memory(Writer& answer, const Descriptor& handle,
   watch_.use_bell(sending_.has_unsent());
 }
 
+bool StreamConnection::shares_slots() const {
+  const SharedCarrier* const shared = layers_.shared();
+  return shared != nullptr && shared->has_slots();
+}
+
+bool StreamConnection::pass_slots(const SlotWriter& slots) {
+  const SharedCarrier* const shared = layers_.shared();
+  return shared != nullptr && !is_closed() && shared->pass_slots(slots);
+}
+
+std::shared_ptr<SlotReader> StreamConnection::take_slots(std::uint64_t id) {
+  SharedCarrier* const shared = layers_.shared();
+  return shared == nullptr ? nullptr : shared->take_slots(id);
+}
+
 // Bytes that came together with the request did not come through the memory.
 StreamConnection::Received StreamConnection::begin_sharing() {
   layers_.forget_sharing();

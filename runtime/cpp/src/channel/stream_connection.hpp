@@ -102,6 +102,9 @@ class StreamConnection final : public Connection,
   bool wait_sent(std::size_t bytes, Time deadline) override;
   [[nodiscard]] bool has_sent(std::size_t bytes) const override;
   void reply(Writer& message, Priority priority) override;
+  [[nodiscard]] bool shares_slots() const override;
+  [[nodiscard]] bool pass_slots(const SlotWriter& slots) override;
+  std::shared_ptr<SlotReader> take_slots(std::uint64_t id) override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;
   void resign(Waiter& waiter) override;

@@ -245,6 +245,7 @@ void StreamConnection::answer_own(const Message& message, const Entry& entry,
   if (answer.shares_memory) {
     Descriptor handle;
     if (auto carrier = make_shared_carrier(handle)) {
+      if (answer.has_slots) carrier->use_slots();
       share_memory(writer, handle, std::move(carrier));
       return;
     }

@@ -36,9 +36,27 @@ struct Synchronization {
   static void wait_until(Condition& condition, Mutex& mutex, Time deadline) RR_REQUIRES(mutex) {
     channel::wait_until(condition, mutex, deadline);
   }
+  /// What was stored before, seen by whoever has seen what is stored afterwards.
+  static void fence_release() { fence(std::memory_order_release); }
+  /// What is loaded afterwards is not older than what was loaded before.
+  static void fence_acquire() { fence(std::memory_order_acquire); }
   static Time now() { return Clock::now(); }
   static Time coarse_now() { return channel::coarse_now(); }
   static void yield() { std::this_thread::yield(); }
+
+ private:
+  static void fence(std::memory_order order) {
+// The thread sanitizer of g++ does not know fences, and says so. They are for memory that two
+// processes share, which it does not look at.
+#if defined(__SANITIZE_THREAD__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wtsan"
+#endif
+    std::atomic_thread_fence(order);
+#if defined(__SANITIZE_THREAD__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+  }
 };
 
 }  // namespace rr::channel

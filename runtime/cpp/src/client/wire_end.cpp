@@ -39,7 +39,10 @@ void ClientWireEnd::transmit(Writer& writer, const channel::Newest& newest) {
                         endpoint::wire_elements, newest);
 }
 
-void ClientWireEnd::take_answer() { notices_before_ = session_->notices().read(); }
+void ClientWireEnd::take_answer(Decoder& decoder, const Entry& entry) {
+  notices_before_ = session_->notices().read();
+  take_slots(decoder, entry);
+}
 
 void ClientWireEnd::close() {
   if (!begin_close()) return;

@@ -6,6 +6,7 @@
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/client/wire_end.hpp"
+#include "runtime/cpp/src/client/wire_request.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 
 namespace rr {
@@ -44,7 +45,9 @@ std::shared_ptr<ClientWireEnd> begin_connecting(const Stub& stub, const Member& 
 }
 
 Session::AnswerReader connect_reader(std::shared_ptr<ClientWireEnd> end) {
-  return [end = std::move(end)](Decoder&, const Message&, const Entry&) { end->take_answer(); };
+  return [end = std::move(end)](Decoder& decoder, const Message&, const Entry& entry) {
+    end->take_answer(decoder, entry);
+  };
 }
 
 // What comes now is for nobody who waits for an answer.
@@ -97,9 +100,9 @@ Outgoing peek_request(const Stub& stub, const Member& member, bool of_out) {
 WireEnd WireMember::connect_end() {
   Session& session = need_session(*stub_);
   const std::shared_ptr<ClientWireEnd> end = begin_connecting(*stub_, *member_);
+  const client::WireRequest request(endpoint::slots_element, end->wanted_mode());
   try {
-    session.call({EntryType::wire_connect_req, end->path(), member_->name}, connect_reader(end),
-                 stub_->rr_timeout());
+    session.call(request.to(end->path(), member_->name), connect_reader(end), stub_->rr_timeout());
   } catch (...) {
     end->give_up();
     throw;
@@ -122,8 +125,9 @@ void WireMember::start_connect(WireEnd* end, std::unique_ptr<Completion> complet
   }
   auto connecting =
       std::make_shared<ConnectCompletion>(stub_->rr_session(), made, end, std::move(completion));
-  session.start({EntryType::wire_connect_req, made->path(), member_->name}, connect_reader(made),
-                stub_->rr_timeout(), std::move(connecting));
+  const client::WireRequest request(endpoint::slots_element, made->wanted_mode());
+  session.start(request.to(made->path(), member_->name), connect_reader(made), stub_->rr_timeout(),
+                std::move(connecting));
 }
 
 void WireMember::peek_in(void* value, TimeSpec& time) {

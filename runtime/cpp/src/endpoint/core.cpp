@@ -125,11 +125,24 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
   std::vector<std::weak_ptr<Attended>> attended_ RR_GUARDED_BY(mutex_);
 };
 
+namespace {
+
+// Of the wires that a node publishes in shared memory: memory, and a descriptor for each.
+constexpr channel::SlotBudget::Limits node_slots{.bytes = std::size_t{256} * 1024 * 1024,
+                                                 .count = 256};
+// One thread of so many may sleep on a wire of another node.
+constexpr unsigned slot_thread_share = 4;
+
+}  // namespace
+
 Core::Core(NodeOptions options)
     : options_(completed(std::move(options))),
       reactor_(std::make_shared<channel::Reactor>(reactor_terms(options_))),
       accepted_(std::make_shared<channel::Admission>(options_, reactor_->shared_metrics())),
       pools_(channel::make_pools(*options_)),
+      slot_budget_(std::make_shared<channel::SlotBudget>(node_slots)),
+      slot_threads_(std::make_shared<channel::SlotBudget>(
+          channel::SlotBudget::Limits{.count = options_->max_threads / slot_thread_share})),
       types_(std::make_shared<const TypeRegistry>()) {
   const auto limit = std::min(
       {options_->keep_alive_period, options_->client_timeout, options_->generator_timeout});

@@ -19,6 +19,7 @@
 #include "rr/timer.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/channel/slot_budget.hpp"
 #include "runtime/cpp/src/endpoint/found_urls.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
 
@@ -69,6 +70,15 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   /// URLs that the program has from discovery.
   [[nodiscard]] FoundUrls& found_urls() { return found_urls_; }
 
+  /// The memories in which this node publishes wires.
+  [[nodiscard]] const std::shared_ptr<channel::SlotBudget>& slot_budget() const {
+    return slot_budget_;
+  }
+  /// The threads of this node that sleep on wires of others; each has a count, and no bytes.
+  [[nodiscard]] const std::shared_ptr<channel::SlotBudget>& slot_threads() const {
+    return slot_threads_;
+  }
+
   /// Makes a definition and its imports known.
   void add_definition(const Definition& definition);
   /// The same for one that goes with its last owner: it is kept until the node's core goes.
@@ -100,6 +110,8 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   std::shared_ptr<channel::Reactor> reactor_;
   std::shared_ptr<channel::Admission> accepted_;
   const channel::Pools pools_;
+  const std::shared_ptr<channel::SlotBudget> slot_budget_;
+  const std::shared_ptr<channel::SlotBudget> slot_threads_;
   std::shared_ptr<const channel::Tls> tls_;
   std::shared_ptr<channel::Status> status_;
   std::shared_ptr<channel::WebSockets> web_sockets_;

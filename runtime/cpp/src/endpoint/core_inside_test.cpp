@@ -9,13 +9,16 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/status.hpp"
+#include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/testing/fake_connection.hpp"
 #include "runtime/cpp/src/endpoint/timer.hpp"
 #include "runtime/cpp/src/endpoint/user_code.hpp"
 
@@ -63,6 +66,26 @@ class CoreTest : public ::testing::Test {
   std::vector<std::string> lines_ RR_GUARDED_BY(mutex_);
   const std::shared_ptr<Core> core_ = make(options());
 };
+
+TEST_F(CoreTest, CountsMemoriesAndThreadsOfSlots) {
+  const auto core = make(options());
+  EXPECT_TRUE(core->slot_threads()->draw(0)) << "one of four threads";
+  EXPECT_FALSE(core->slot_threads()->draw(0));
+  EXPECT_FALSE(core->slot_budget()->draw(std::size_t{257} * 1024 * 1024));
+  EXPECT_TRUE(core->slot_budget()->draw(std::size_t{256} * 1024 * 1024));
+}
+
+// What a connection has that shares no memory.
+TEST(Connections, HaveNoSlotsByThemselves) {
+  rr::testing::FakeConnection fake;
+  channel::Connection& connection = fake;
+  EXPECT_FALSE(connection.shares_slots());
+  EXPECT_EQ(connection.take_slots(1), nullptr);
+  std::error_code error;
+  const auto slots = channel::SlotWriter::make(channel::SlotSizes::for_value(1), 1, error);
+  if (!slots) GTEST_SKIP() << "this system has no shared memory";
+  EXPECT_FALSE(connection.pass_slots(*slots));
+}
 
 TEST_F(CoreTest, IsNamedAndHasAnId) {
   EXPECT_EQ(core_->name(), "board");

@@ -14,13 +14,24 @@ inline bool is_later(const TimeSpec& time, const TimeSpec& other) {
                                        : time.nanoseconds > other.nanoseconds;
 }
 
+/// The time that a sender has given to a value, and when that value has arrived.
+struct Arrival : TimeSpec {
+  Arrival(const TimeSpec& time, channel::Time arrived) : TimeSpec(time), at(arrived) {}
+
+  channel::Time at;
+};
+
 /// What has come last, and until when it counts. Not synchronized.
 class NewestValue {
  public:
   /// Gives back what was there, which may be large to free.
   std::shared_ptr<const void> put(std::shared_ptr<const void> value, const TimeSpec& time) {
-    time_ = time;
-    arrived_ = channel::Clock::now();
+    return put(std::move(value), Arrival(time, channel::Clock::now()));
+  }
+  /// The same for one that has arrived before.
+  std::shared_ptr<const void> put(std::shared_ptr<const void> value, const Arrival& arrival) {
+    time_ = arrival;
+    arrived_ = arrival.at;
     return std::exchange(value_, std::move(value));
   }
   /// Null for none, and for one that has expired.

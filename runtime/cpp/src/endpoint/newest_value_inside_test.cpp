@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -11,6 +12,18 @@ namespace rr::endpoint {
 namespace {
 
 std::shared_ptr<const void> value(int number) { return std::make_shared<const int>(number); }
+
+TEST(NewestValue, MayHaveArrivedBefore) {
+  NewestValue newest;
+  newest.set_lifespan(std::chrono::milliseconds(1000));
+  const channel::Time now = channel::Clock::now();
+  EXPECT_EQ(newest.put(value(1), Arrival({1, 2}, now - std::chrono::hours(1))), nullptr);
+  EXPECT_FALSE(newest.is_fresh());
+  EXPECT_EQ(newest.time(), (TimeSpec{1, 2}));
+  newest.put(value(2), Arrival({1, 3}, now));
+  newest.set_lifespan(std::chrono::hours(1));
+  EXPECT_TRUE(newest.is_fresh());
+}
 
 TEST(NewestValue, IsWhatHasComeLast) {
   NewestValue newest;

@@ -73,7 +73,13 @@ void WireEnd::State::keep_sent(std::shared_ptr<const void> value, endpoint::Send
 }
 
 std::shared_ptr<const void> WireEnd::State::sent(TimeSpec& time) const {
+  endpoint::SenderTime time_to_all = 0;
+  std::shared_ptr<const void> to_all = sent_to_all(time_to_all);
   const MutexLock lock(mutex_);
+  if (to_all && time_to_all > sent_time_) {
+    time = endpoint::as_time_spec(time_to_all);
+    return to_all;
+  }
   if (sent_time_ == 0) return nullptr;
   time = endpoint::as_time_spec(sent_time_);
   if (!is_own_sent_) return common_sent_;
@@ -113,6 +119,36 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
   if (must_start) start_telling();
 }
 
+void WireEnd::State::take_slot(std::span<const std::byte> elements, const MemoryRef& owner,
+                               channel::Time published, const TypeRegistry& types,
+                               bool tells_here) {
+  if (!may_receive_ || member_.holding == nullptr) return;
+  Entry entry;
+  entry.elements = elements;
+  entry.element_count = endpoint::wire_elements;
+  std::shared_ptr<void> made;
+  endpoint::Arrival arrival({}, published);
+  try {
+    made = member_.holding->make();
+    Decoder decoder(MessageVersion::v4, nullptr, owner, &types);
+    endpoint::read_wire(decoder, entry, *member_.type, arrival, made.get());
+  } catch (const std::exception& error) {
+    channel::DeferredCallbacks deferred;
+    refuse(error, deferred);
+    for (std::function<void()>& later : deferred) core_->reactor().post(std::move(later));
+    return;
+  }
+  const std::shared_ptr<const void> value = std::move(made);
+  std::shared_ptr<const void> before;
+  channel::Charge charge;
+  if (!Steps::take(*this, value, arrival, charge, before)) return;
+  if (tells_here) {
+    tell_all();
+  } else {
+    start_telling();
+  }
+}
+
 void WireEnd::State::refuse(const std::exception& why, channel::DeferredCallbacks& deferred) {
   const Error error(ErrorCode::data_type_mismatch,
                     "`" + path_ + "." + std::string(member_.name) +
@@ -135,18 +171,21 @@ void WireEnd::State::on_refused(std::function<void(const Error&)> function) {
   if (refusal) (*shared)(*refusal);
 }
 
-std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) const {
+std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) {
+  look();
   const MutexLock lock(mutex_);
   return in_.get(time);
 }
 
 bool WireEnd::State::wait_received(std::chrono::milliseconds limit) {
+  look();
   {
     const MutexLock lock(mutex_);
     if (in_.is_fresh()) return true;
   }
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   connection().expect();
+  on_awaited();
   channel::Reactor::about_to_wait();
   return Steps::wait(*this, deadline);
 }

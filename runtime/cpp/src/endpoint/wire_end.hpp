@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct NewestSteps;
 /// Functions of the program are called by work that is posted while there is something to tell:
 /// it goes on until every function has seen the newest value, so that one that is slow misses
 /// values and holds up nothing else. Nothing of the program runs under the lock.
+///
+/// Large because what comes, what is sent and what is told to the program meet in one lock, and the
+/// two sides differ in a few functions of each.
 struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
  public:
   State(std::shared_ptr<endpoint::Core> core, std::string path, const Member& member);
@@ -52,7 +56,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   [[nodiscard]] virtual std::uint32_t client() const { return 0; }
   [[nodiscard]] bool is_open() const { return phase_ == Phase::open; }
   void on_closed(Function<void()> function);
-  std::shared_ptr<const void> received(TimeSpec& time) const;
+  std::shared_ptr<const void> received(TimeSpec& time);
   bool wait_received(std::chrono::milliseconds limit);
   void set_lifespan(std::chrono::milliseconds lifespan);
   Subscription on_received(Function<void(const void*, const TimeSpec&)> function);
@@ -82,6 +86,13 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   void finish_now();
   /// A value that cannot be read.
   void refuse(const std::exception& why, channel::DeferredCallbacks& deferred);
+  /// A value that was copied out of a slot: the elements of a packet in format 4, and when that was
+  /// published. What does not count is dropped. `tells_here`: this thread of the node calls the
+  /// functions of the program, else another one does.
+  void take_slot(std::span<const std::byte> elements, const MemoryRef& owner,
+                 channel::Time published, const TypeRegistry& types, bool tells_here);
+  /// Whether threads or functions of the program wait for values.
+  [[nodiscard]] bool is_awaited() const;
   /// Keeps what is being sent as what was sent last.
   void keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time);
 
@@ -92,6 +103,16 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   virtual endpoint::SenderTime draw_time() = 0;
   /// Sends a packet whose elements the writer holds. Throws rr::Error.
   virtual void transmit(Writer& writer, const channel::Newest& newest) = 0;
+  /// To be called before a value is given to the program: takes a newer one, where they do not come
+  /// by themselves. Under no lock.
+  virtual void look() {}
+  /// is_awaited() has come true, or may be about to. Under no lock.
+  virtual void on_awaited() {}
+  /// The value that was sent to all, this end included, and its time; null for none.
+  [[nodiscard]] virtual std::shared_ptr<const void> sent_to_all(
+      endpoint::SenderTime& /*time*/) const {
+    return nullptr;
+  }
   /// A value has been taken. Under the lock.
   virtual void on_taken(const std::shared_ptr<const void>& /*value*/, const TimeSpec& /*time*/) {}
   /// Whether tell() is to be called.

@@ -33,6 +33,7 @@ void WireEnd::State::guard(const Call& call) const {
 }
 
 Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSpec&)> function) {
+  look();
   channel::DeferredCallbacks deferred;
   std::shared_ptr<Listener> listener;
   bool must_start = false;
@@ -45,9 +46,17 @@ Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSp
     must_start = must_start_telling();
   }
   connection().expect();
+  on_awaited();
   if (must_start) start_telling();
   for (const std::function<void()>& later : deferred) later();
   return Subscription(std::move(listener));
+}
+
+bool WireEnd::State::is_awaited() const {
+  const MutexLock lock(mutex_);
+  if (is_ending()) return false;
+  return waiting_ != 0 || std::any_of(listeners_.begin(), listeners_.end(),
+                                      [](const auto& one) { return one->is_connected(); });
 }
 
 void WireEnd::State::on_closed(Function<void()> function) {

@@ -6,6 +6,8 @@
 #include <future>
 #include <memory>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "rr/definition.hpp"
@@ -34,8 +36,24 @@ class FakeEnd final : public WireEnd::State {
     if (begin_close()) finish_now();
   }
   mutable FakeConnection fake;
+  /// What look() finds; empty: nothing.
+  std::vector<std::byte> slot{};
+  channel::Time published{};
+  int awaited = 0;                         ///< calls of on_awaited()
+  std::shared_ptr<const double> to_all{};  ///< sent to all
+  SenderTime time_to_all = 0;
+  using State::is_awaited;
 
  private:
+  void look() override {
+    if (slot.empty()) return;
+    take_slot(std::exchange(slot, {}), {}, published, *core().types(), false);
+  }
+  void on_awaited() override { ++awaited; }
+  [[nodiscard]] std::shared_ptr<const void> sent_to_all(SenderTime& time) const override {
+    time = time_to_all;
+    return to_all;
+  }
   [[nodiscard]] channel::Connection& connection() const override { return fake; }
   void check_sending() const override {}
   SenderTime draw_time() override { return ++time_; }
@@ -152,6 +170,61 @@ TEST_F(WireEndTest, ValuesExpire) {
   EXPECT_EQ(received(), -1);
   EXPECT_FALSE(end_->wait_received(0ms));
   EXPECT_GE(end_->fake.expected, 1) << "the reactor is to read";
+}
+
+TEST_F(WireEndTest, AValueMayBeLookedFor) {
+  const ArrivedValue one(1.0, {1, 0});
+  end_->slot.assign(one.entry.elements.begin(), one.entry.elements.end());
+  end_->published = channel::Clock::now();
+  EXPECT_EQ(received(), 1);
+  arrive(3.0, {3, 0});
+  const ArrivedValue two(2.0, {2, 0});
+  end_->slot.assign(two.entry.elements.begin(), two.entry.elements.end());
+  EXPECT_EQ(received(), 3) << "an older one comes too late";
+  const ArrivedValue four(4.0, {4, 0});
+  end_->slot.assign(four.entry.elements.begin(), four.entry.elements.end());
+  end_->published = channel::Clock::now() - 1h;
+  EXPECT_TRUE(end_->wait_received(0ms));
+  EXPECT_EQ(received(), 4);
+  end_->set_lifespan(1000ms);
+  EXPECT_EQ(received(), -1) << "it was published long ago";
+}
+
+TEST_F(WireEndTest, WhatIsNoValueIsNotTakenFromASlot) {
+  std::atomic<int> refused{0};
+  end_->on_refused([&](const Error&) { ++refused; });
+  end_->slot.assign(100, std::byte{0xFF});
+  EXPECT_EQ(received(), -1);
+  const ArrivedValue text(std::string("text"), {1, 0});
+  end_->slot.assign(text.entry.elements.begin(), text.entry.elements.end());
+  EXPECT_EQ(received(), -1);
+  const auto deadline = channel::Clock::now() + 1h;
+  while (refused != 2 && channel::Clock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(refused, 2);
+}
+
+TEST_F(WireEndTest, SaysWhenValuesAreAwaited) {
+  EXPECT_FALSE(end_->is_awaited());
+  Subscription subscription = end_->on_received([](const void*, const TimeSpec&) {});
+  EXPECT_EQ(end_->awaited, 1);
+  EXPECT_TRUE(end_->is_awaited());
+  subscription.disconnect();
+  EXPECT_FALSE(end_->is_awaited());
+  EXPECT_FALSE(end_->wait_received(0ms));
+  EXPECT_EQ(end_->awaited, 2);
+}
+
+TEST_F(WireEndTest, WhatWasSentToAllWasSentHereToo) {
+  const double value = 1.5;
+  end_->open();
+  end_->send(&value);
+  end_->to_all = std::make_shared<const double>(2.5);
+  end_->time_to_all = 5;
+  EXPECT_EQ(value_of(end_->sent(time_)), 2.5);
+  EXPECT_EQ(time_, (TimeSpec{0, 5}));
+  end_->time_to_all = 1;
+  end_->to_all = std::make_shared<const double>(0.5);
+  EXPECT_EQ(value_of(end_->sent(time_)), 1.5) << "that was later";
 }
 
 TEST_F(WireEndTest, AThreadWaitsForAValue) {

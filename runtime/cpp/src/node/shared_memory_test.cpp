@@ -3,19 +3,16 @@
 // killed, and a memory that is written over at any time.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/mman.h>
 
 #include <array>
 #include <atomic>
-#include <cstring>
-#include <fstream>
 #include <random>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "runtime/cpp/src/node/testing/child.hpp"
+#include "runtime/cpp/src/node/testing/mappings.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
 
@@ -24,52 +21,6 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
-
-struct Mapping {
-  std::byte* begin = nullptr;
-  std::size_t size = 0;
-};
-
-// The shared memories that this process has mapped.
-std::vector<Mapping> mappings() {
-  std::vector<Mapping> found;
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);) {
-    if (line.find("/memfd:robdef") == std::string::npos) continue;
-    std::size_t dash = 0;
-    const std::uintptr_t begin = std::stoull(line, &dash, 16);
-    const std::uintptr_t end = std::stoull(line.substr(dash + 1), nullptr, 16);
-    found.push_back({reinterpret_cast<std::byte*>(begin), end - begin});
-  }
-  return found;
-}
-
-// The same memory at another place, where it stays for as long as this exists.
-class SecondMapping {
- public:
-  explicit SecondMapping(const Mapping& first)
-      : bytes_(::mremap(first.begin, 0, first.size, MREMAP_MAYMOVE)), size_(first.size) {}
-  SecondMapping(SecondMapping&& other) noexcept
-      : bytes_(std::exchange(other.bytes_, MAP_FAILED)), size_(other.size_) {}
-  SecondMapping& operator=(SecondMapping&&) = delete;
-  ~SecondMapping() {
-    if (is_there()) ::munmap(bytes_, size_);
-  }
-
-  // False when the first one has gone before.
-  [[nodiscard]] bool is_there() const { return bytes_ != MAP_FAILED; }
-  // Something at a place of it, of the words most of the time.
-  void scribble(std::mt19937_64& random) const {
-    const std::size_t most = random() % 4 == 0 ? size_ : std::size_t{0x300};
-    const std::uint64_t value = random() >> (random() % 64);
-    const std::size_t at = random() % (most - sizeof value) & ~std::size_t{3};
-    std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, 1 + random() % sizeof value);
-  }
-
- private:
-  void* bytes_;
-  std::size_t size_;
-};
 
 class SharedMemory : public ::testing::Test {
  protected:

@@ -76,6 +76,26 @@ TEST_F(WireProtocol, PacketsThatDoNotCountAreDroppedInSilence) {
   EXPECT_FALSE(pair_.object->reading().out());
 }
 
+// Slots are for who shares memory with the service: elsewhere the elements mean nothing.
+TEST_F(WireProtocol, SlotsAreNotGivenWhereNoMemoryIsShared) {
+  const auto wish = [](const char* name) {
+    return [name](Writer& writer) {
+      const std::uint32_t woken = 2;
+      type_of<std::uint32_t>.write(writer, name, &woken);
+      return 1U;
+    };
+  };
+  const auto first =
+      client_.ask(EntryType::wire_connect_req, "wired", "level", wish("robdef.slots"));
+  EXPECT_EQ(first.error, 0);
+  EXPECT_EQ(first.element_count, 0U);
+  const auto again =
+      client_.ask(EntryType::wire_connect_req, "wired", "level", wish("robdef.slots_again"));
+  EXPECT_EQ(again.error, 0);
+  EXPECT_EQ(again.element_count, 0U);
+  EXPECT_EQ(pair_.object->level().connection_count(), 1U);
+}
+
 // A program may rely on nanoseconds that are less than a second (rr/time_spec.hpp).
 TEST_F(WireProtocol, TimesOfOthersHaveSoundNanoseconds) {
   constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min();

@@ -51,6 +51,14 @@ SharedMemory make_shared_memory(std::size_t size, Descriptor& handle, std::error
 SharedMemory map_shared_memory(const Descriptor& handle, std::size_t largest,
                                std::error_code& error);
 
+/// As make_shared_memory(), but nobody who gets the handle can write to it, whoever he is: neither
+/// by a mapping nor otherwise. This process can. An error where the system has nothing of the kind.
+SharedMemory make_published_memory(std::size_t size, Descriptor& handle, std::error_code& error);
+/// Maps such memory, to be read alone: writing to it ends the process. Refused as by
+/// map_shared_memory(), and what another reader could write to.
+SharedMemory map_published_memory(const Descriptor& handle, std::size_t largest,
+                                  std::error_code& error);
+
 /// As send(), on a local socket, with a handle that travels with the first byte.
 std::ptrdiff_t send_with_handle(int socket, std::span<const std::byte> bytes,
                                 const Descriptor& handle);
@@ -58,7 +66,8 @@ std::ptrdiff_t send_with_handle(int socket, std::span<const std::byte> bytes,
 /// the first.
 std::ptrdiff_t receive_with_handle(int socket, std::span<std::byte> room, Descriptor& handle);
 
-/// As sleep_on(), on a word in shared memory, for `time` at most. False when that is over.
+/// As sleep_on(), on a word in shared memory, for `time` at most. False when that is over. The word
+/// need not be in memory that this process may write to; the same holds for wake_shared().
 bool sleep_on_shared(const SleepWord& word, std::uint32_t seen, std::chrono::nanoseconds time);
 /// Wakes the threads of all processes that sleep on the word.
 void wake_shared(const SleepWord* word);

@@ -2,13 +2,18 @@
 // Memory that processes share, as the header promises it where the system has some.
 #include "runtime/cpp/src/platform/shared_memory.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "runtime/cpp/src/platform/files.hpp"
 
@@ -41,6 +46,10 @@ class SharedMemoryTest : public ::testing::Test {
     return come;
   }
 
+  static bool may_be_written_to(const SharedMemory& memory) {
+    return ::mprotect(memory.bytes(), memory.size(), PROT_READ | PROT_WRITE) == 0;
+  }
+
   Descriptor first_;
   Descriptor second_;
   std::error_code error_;
@@ -71,6 +80,65 @@ TEST_F(SharedMemoryTest, StaysWhenItsMakerHasGone) {
   memory = {};
   handle = {};
   EXPECT_EQ(other.bytes()[0], std::byte{7});
+}
+
+TEST_F(SharedMemoryTest, PublishedCanBeReadAlone) {
+  Descriptor handle;
+  const SharedMemory memory = make_published_memory(8192, handle, error_);
+  ASSERT_TRUE(memory) << error_.message();
+  const Descriptor come = passed(handle);
+  const SharedMemory other = map_published_memory(come, 8192, error_);
+  ASSERT_TRUE(other) << error_.message();
+  memory.bytes()[8191] = std::byte{42};
+  EXPECT_EQ(other.bytes()[8191], std::byte{42});
+
+  // Neither by this mapping, nor by another one, nor by the file, nor by opening that once more.
+  EXPECT_FALSE(may_be_written_to(other));
+  EXPECT_FALSE(map_shared_memory(come, 8192, error_));
+  EXPECT_EQ(error_, std::errc::operation_not_permitted);
+  EXPECT_EQ(::pwrite(come.get(), "x", 1, 0), -1);
+  const std::string path = "/proc/self/fd/" + std::to_string(come.get());
+  const Descriptor again(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  ASSERT_TRUE(again);
+  error_ = {};
+  EXPECT_FALSE(map_shared_memory(again, 8192, error_));
+  EXPECT_EQ(error_, std::errc::operation_not_permitted);
+  EXPECT_EQ(::pwrite(again.get(), "x", 1, 0), -1);
+  EXPECT_EQ(memory.bytes()[0], std::byte{0});
+}
+
+TEST_F(SharedMemoryTest, WhatAnotherReaderCouldWriteToIsNotPublished) {
+  Descriptor handle;
+  const SharedMemory memory = make_shared_memory(4096, handle, error_);
+  ASSERT_TRUE(memory);
+  EXPECT_FALSE(map_published_memory(handle, 4096, error_));
+  EXPECT_EQ(error_, std::errc::invalid_argument);
+  const SharedMemory published = make_published_memory(8192, handle, error_);
+  ASSERT_TRUE(published);
+  error_ = {};
+  EXPECT_FALSE(map_published_memory(handle, 8191, error_));
+  EXPECT_EQ(error_, std::errc::invalid_argument);
+}
+
+// A reader sleeps on a word that it cannot write to, and may wake others that do.
+TEST_F(SharedMemoryTest, ASleeperNeedsNoRightToWrite) {
+  Descriptor handle;
+  const SharedMemory memory = make_published_memory(4096, handle, error_);
+  const SharedMemory other = map_published_memory(handle, 4096, error_);
+  ASSERT_TRUE(other);
+  auto& word = *new (memory.bytes()) SleepWord{0};
+  const auto& same = *reinterpret_cast<const SleepWord*>(other.bytes());
+  EXPECT_FALSE(sleep_on_shared(same, 0, 5ms));
+  for (const SleepWord* const waking : {&std::as_const(word), &same}) {
+    std::atomic<bool> is_woken{false};
+    std::thread sleeper([&] { is_woken = sleep_on_shared(same, 0, 20s); });
+    while (!is_woken) {
+      std::this_thread::sleep_for(1ms);
+      wake_shared(waking);
+    }
+    sleeper.join();
+    EXPECT_TRUE(is_woken);
+  }
 }
 
 TEST_F(SharedMemoryTest, IsRefusedWhenItIsTooLargeOrNone) {

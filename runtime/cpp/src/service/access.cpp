@@ -124,7 +124,10 @@ void ServerEndpoint::log_out() {
 }
 
 void ServerEndpoint::renew_rights(ServiceHost& host) {
-  if (access_.renew_rights(host)) end_what_is_not_allowed(host, false);
+  if (!access_.renew_rights(host)) return;
+  end_what_is_not_allowed(host, false);
+  // Whoever has left before may still read what was for all.
+  wires_.renew_slots();
 }
 
 // Behind every change of what the session may do: what is open, and would be refused now, ends; all

@@ -26,6 +26,21 @@ std::shared_ptr<const void> need(std::shared_ptr<const void> value) {
   return value;
 }
 
+// What the time of a packet takes in format 4, at most.
+constexpr std::size_t size_of_time = 128;
+
+bool has_end(const OfferedWire::Ends& ends, const ServedWireEnd& end) {
+  return std::any_of(ends.begin(), ends.end(),
+                     [&](const OfferedWire::End& other) { return other.get() == &end; });
+}
+
+std::shared_ptr<const OfferedWire::Ends> without_end(const OfferedWire::Ends& ends,
+                                                     const ServedWireEnd& end) {
+  auto result = std::make_shared<OfferedWire::Ends>(ends);
+  std::erase_if(*result, [&](const OfferedWire::End& other) { return other.get() == &end; });
+  return result;
+}
+
 // The elements of one packet, in each message version that is asked for. Not in the thread's
 // writer, which the messages are put together in.
 class Packet {
@@ -39,6 +54,8 @@ class Packet {
     endpoint::write_wire_value(writer, *member_.type, value_);
     is_begun_[version == MessageVersion::v4] = true;
   }
+  // Without the time.
+  [[nodiscard]] std::size_t size() const { return writers_[1].size(); }
   Writer& finish(MessageVersion version, const TimeSpec& time) {
     const std::size_t place = version == MessageVersion::v4;
     if (!is_begun_[place]) begin(version);
@@ -62,19 +79,33 @@ void OfferedWire::send_all(const void* value) {
   refuse_write_only(member_);
   Packet packet(member_, value);
   packet.begin(MessageVersion::v4);  // what cannot be sent is refused, whoever is connected
+  const std::size_t size = packet.size() + size_of_time;
   std::shared_ptr<void> kept = member_.holding->make();
   member_.holding->copy(value, kept.get());
   std::shared_ptr<const void> before;
   std::shared_ptr<const Ends> ends;
+  std::shared_ptr<channel::SlotWriter> memory;
+  std::shared_ptr<channel::SlotWriter> ended;
   endpoint::SenderTime time = 0;
   {
     const MutexLock lock(mutex_);
     before = std::exchange(in_, kept);
-    ends = ends_;
-    if (ends->empty()) return;
-    time = times_.draw(ends->front()->clock());
+    value_size_ = std::max(value_size_, size);
+    if (ends_->empty()) return;
+    time = times_.draw(ends_->front()->clock());
+    in_time_ = time;
+    memory = readers_.memory();
+    if (memory && size > memory->sizes().slot) {
+      ended = end_slots();
+      memory = nullptr;
+    }
+    ends = told_;
   }
   const TimeSpec stamp = endpoint::as_time_spec(time);
+  if (memory) {
+    Writer& elements = packet.finish(MessageVersion::v4, stamp);
+    memory->publish(elements.pieces(), elements.size(), time);
+  }
   for (std::size_t i = 0; i < ends->size(); ++i) {
     // What the next ones touch is in no cache when there are a thousand of them.
     for (std::size_t step = 0; step < ServedWireEnd::fetch_steps; ++step) {
@@ -85,35 +116,145 @@ void OfferedWire::send_all(const void* value) {
     if (!end->is_open()) continue;
     end->send_common(kept, packet.finish(end->version(), stamp), time);
   }
+  if (ended) ended->end();
 }
 
-void OfferedWire::join(const End& end) {
-  std::shared_ptr<const void> last;
-  endpoint::SenderTime time = 0;
+// Before the time of whatever is sent to all from now on.
+OfferedWire::Last OfferedWire::last_for(const ServedWireEnd& end) {
+  return {in_, in_ ? times_.draw(end.clock()) : 0};
+}
+
+void OfferedWire::send_last(const End& end, const Last& last) const {
+  if (!last.value) return;
+  Packet packet(member_, last.value.get());
+  end->send_common(last.value, packet.finish(end->version(), endpoint::as_time_spec(last.time)),
+                   last.time);
+}
+
+std::uint64_t OfferedWire::join(const End& end, endpoint::SlotMode mode) {
+  Last last;
   Shared<Connected> connected;
   {
     const MutexLock lock(mutex_);
-    if (std::find(ends_->begin(), ends_->end(), end) == ends_->end()) {
-      ends_ = with_end(*ends_, end, [](const End& one) { return one->node(); });
+    const auto node_of = [](const End& one) { return one->node(); };
+    const bool is_first = !has_end(*ends_, *end);
+    if (is_first) ends_ = with_end(*ends_, end, node_of);
+    // It may have had slots before, and want none now.
+    if (is_first || (mode == endpoint::SlotMode::messages && readers_.remove(*end))) {
+      told_ = with_end(*told_, end, node_of);
     }
-    last = in_;
-    // Before the time of whatever is sent to all from now on.
-    if (last) time = times_.draw(end->clock());
+    last = last_for(*end);
     connected = connected_;
   }
-  if (last) {
-    Packet packet(member_, last.get());
-    end->send_common(last, packet.finish(end->version(), endpoint::as_time_spec(time)), time);
+  std::uint64_t id = 0;
+  if (mode == endpoint::SlotMode::messages) {
+    send_last(end, last);
+  } else {
+    id = use_slots(end, mode == endpoint::SlotMode::woken);
   }
   if (connected) (*connected)(WireEnd(end));
+  return id;
 }
 
+std::uint64_t OfferedWire::change(const End& end, endpoint::SlotMode mode) {
+  if (mode != endpoint::SlotMode::messages) {
+    return use_slots(end, mode == endpoint::SlotMode::woken);
+  }
+  use_messages(end);
+  return 0;
+}
+
+// A client that does not get slots gets the newest value by a message, since it may have had slots
+// until now.
+std::uint64_t OfferedWire::use_slots(const End& end, bool is_woken) {
+  std::shared_ptr<channel::SlotWriter> memory;
+  bool is_new = false;
+  Last last;
+  if (!put_in_slots(end, is_woken, memory, is_new, last)) {
+    use_messages(end);
+    return 0;
+  }
+  if (!is_new) return memory->id();
+  if (last.value && memory->is_empty()) {
+    Packet packet(member_, last.value.get());
+    Writer& elements = packet.finish(MessageVersion::v4, endpoint::as_time_spec(last.time));
+    memory->publish(elements.pieces(), elements.size(), last.time);
+  }
+  if (end->pass_slots(*memory)) return memory->id();
+  use_messages(end);
+  return 0;
+}
+
+// False when there are none for this end.
+bool OfferedWire::put_in_slots(const End& end, bool is_woken,
+                               std::shared_ptr<channel::SlotWriter>& memory, bool& is_new,
+                               Last& last) {
+  const MutexLock lock(mutex_);
+  if (!has_end(*ends_, *end)) return false;  // it has left meanwhile
+  is_new = !readers_.has(*end);
+  if (is_new) {
+    if (!end->may_send() || !readers_.add(*end, end->is_restricted(), value_size_,
+                                          end->node_slots(), end->session_slots())) {
+      return false;
+    }
+    told_ = without_end(*told_, *end);
+    end->note_slots();
+    last = last_for(*end);
+    if (last.value && readers_.memory()->is_empty()) in_time_ = last.time;
+  }
+  readers_.set_woken(*end, is_woken);
+  memory = readers_.memory();
+  return true;
+}
+
+void OfferedWire::use_messages(const End& end) {
+  Last last;
+  {
+    const MutexLock lock(mutex_);
+    readers_.remove(*end);
+    if (!has_end(*ends_, *end)) return;
+    if (!has_end(*told_, *end)) {
+      told_ = with_end(*told_, end, [](const End& one) { return one->node(); });
+    }
+    last = last_for(*end);
+  }
+  send_last(end, last);
+}
+
+// All get messages from now on. The caller ends the memory, under no lock.
+std::shared_ptr<channel::SlotWriter> OfferedWire::end_slots() {
+  told_ = ends_;
+  return readers_.clear();
+}
+
+void OfferedWire::renew_slots() {
+  std::shared_ptr<channel::SlotWriter> ended;
+  {
+    const MutexLock lock(mutex_);
+    ended = end_slots();
+  }
+  if (ended) ended->end();
+}
+
+std::shared_ptr<const void> OfferedWire::sent_to_all(endpoint::SenderTime& time) const {
+  const MutexLock lock(mutex_);
+  time = in_time_;
+  return in_time_ == 0 ? nullptr : in_;
+}
+
+// A client that has left keeps what it has mapped.
 void OfferedWire::leave(const ServedWireEnd& end) {
   std::shared_ptr<const Ends> before;  // freed outside of the lock
-  const MutexLock lock(mutex_);
-  auto ends = std::make_shared<Ends>(*ends_);
-  std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
-  before = std::exchange(ends_, std::move(ends));
+  std::shared_ptr<channel::SlotWriter> ended;
+  {
+    const MutexLock lock(mutex_);
+    const bool has_restricted = readers_.has_restricted();
+    before = std::exchange(ends_, without_end(*ends_, end));
+    told_ = without_end(*told_, end);
+    const bool was_reader = readers_.remove(end);
+    if (was_reader && has_restricted) ended = end_slots();
+  }
+  if (ended) ended->end();
 }
 
 std::shared_ptr<const void> OfferedWire::received(TimeSpec& time) const {

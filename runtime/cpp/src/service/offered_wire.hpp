@@ -13,6 +13,8 @@
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
+#include "runtime/cpp/src/endpoint/slot_terms.hpp"
+#include "runtime/cpp/src/service/slot_readers.hpp"
 
 namespace rr::service {
 
@@ -20,6 +22,10 @@ class ServedWireEnd;
 
 /// A wire that an object offers: what belongs to all its clients. Functions of the program are
 /// called under no lock.
+///
+/// What is sent to all goes to some clients by messages, and to others by slots in a memory that
+/// they share (docs/decisions/0049-wires-in-shared-memory.md). Who changes from one to the other
+/// gets the newest value by the new way, with a time of its own: none is lost between the two.
 class OfferedWire {
  public:
   using End = std::shared_ptr<ServedWireEnd>;
@@ -41,9 +47,16 @@ class OfferedWire {
   void set_received(Received function);
 
   // What its clients do.
-  /// Takes part from now on, and gets what was sent last, before the object is told.
-  void join(const End& end);
+  /// Takes part from now on, and gets what was sent last, before the object is told. Returns the
+  /// number of the memory with its slots; 0: values come by messages.
+  std::uint64_t join(const End& end, endpoint::SlotMode mode);
   void leave(const ServedWireEnd& end);
+  /// A client that takes part wants to get values otherwise. Returns as join().
+  std::uint64_t change(const End& end, endpoint::SlotMode mode);
+  /// Whoever reads by slots has to ask for them once more: they may not be for all any more.
+  void renew_slots();
+  /// What was sent to all last, and its time; null for nothing.
+  std::shared_ptr<const void> sent_to_all(endpoint::SenderTime& time) const;
   /// The values that peeks are answered with. Throw rr::Error (value_not_set), and what the program
   /// throws.
   std::shared_ptr<const void> peek_in() const;
@@ -55,6 +68,19 @@ class OfferedWire {
   endpoint::SenderTime draw_time(const endpoint::SenderClock& clock) { return times_.draw(clock); }
 
  private:
+  // What is sent to one client when it joins, or changes over.
+  struct Last {
+    std::shared_ptr<const void> value{};
+    endpoint::SenderTime time = 0;
+  };
+  [[nodiscard]] Last last_for(const ServedWireEnd& end) RR_REQUIRES(mutex_);
+  void send_last(const End& end, const Last& last) const;
+  std::uint64_t use_slots(const End& end, bool is_woken);
+  bool put_in_slots(const End& end, bool is_woken, std::shared_ptr<channel::SlotWriter>& memory,
+                    bool& is_new, Last& last);
+  void use_messages(const End& end);
+  std::shared_ptr<channel::SlotWriter> end_slots() RR_REQUIRES(mutex_);
+
   template <class Function>
   using Shared = std::shared_ptr<const Function>;
   template <class Function>
@@ -68,8 +94,13 @@ class OfferedWire {
 
   mutable Mutex mutex_;
   std::shared_ptr<const Ends> ends_ RR_GUARDED_BY(mutex_) =
-      std::make_shared<const Ends>();                     // replaced, never changed
+      std::make_shared<const Ends>();  // replaced, never changed
+  std::shared_ptr<const Ends> told_ RR_GUARDED_BY(mutex_) =
+      ends_;                                              // those of them that get messages
+  SlotReaders readers_ RR_GUARDED_BY(mutex_);             // the others
+  std::size_t value_size_ RR_GUARDED_BY(mutex_) = 0;      // the largest so far, in bytes
   std::shared_ptr<const void> in_ RR_GUARDED_BY(mutex_);  // what was sent to all last
+  endpoint::SenderTime in_time_ RR_GUARDED_BY(mutex_) = 0;
   endpoint::NewestValue out_ RR_GUARDED_BY(mutex_);
   Shared<Connected> connected_ RR_GUARDED_BY(mutex_);
   Shared<Peek> peek_in_ RR_GUARDED_BY(mutex_);

@@ -51,6 +51,17 @@ bool ServedWireEnd::is_allowed(std::atomic<std::uint32_t>& asked_at, bool is_tak
   return is_allowed;
 }
 
+bool ServedWireEnd::is_restricted() const { return !endpoint_->access().is_open_to_all(); }
+const std::shared_ptr<channel::SlotBudget>& ServedWireEnd::session_slots() const {
+  return endpoint_->wires().slot_budget();
+}
+
+// With slots nothing is kept for each client. What was sent to all came to this one as well, or
+// will when it has changed over.
+std::shared_ptr<const void> ServedWireEnd::sent_to_all(endpoint::SenderTime& time) const {
+  return has_had_slots_ ? offered_->sent_to_all(time) : nullptr;
+}
+
 void ServedWireEnd::check_sending() const {
   if ((member().access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only member");

@@ -94,6 +94,11 @@ std::shared_ptr<const Grants> SessionAccess::grants() const {
   return grants_;
 }
 
+bool SessionAccess::is_open_to_all() const {
+  const MutexLock lock(mutex_);
+  return is_open_ && !has_users_ && !rights_;
+}
+
 bool SessionAccess::suffices(const AccessRow& row, std::uint32_t standing) {
   switch (row.needs) {
     case Needs::nothing:

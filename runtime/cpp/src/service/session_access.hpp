@@ -61,6 +61,8 @@ class SessionAccess {
   [[nodiscard]] bool allows(const AccessRow& row, std::string_view path,
                             std::string_view member) const;
   [[nodiscard]] bool has_rules() const { return (standing() & ruled) != 0; }
+  /// Whether the service has neither users nor rules: nobody is refused anything.
+  [[nodiscard]] bool is_open_to_all() const;
   /// What the rules say; all rights without any.
   [[nodiscard]] RightSet rights_of(std::string_view path, std::string_view member) const;
 

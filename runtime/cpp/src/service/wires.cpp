@@ -5,6 +5,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/slot_terms.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 #include "runtime/cpp/src/service/offered_wire.hpp"
 #include "runtime/cpp/src/service/places.hpp"
@@ -20,7 +21,22 @@ void run(channel::DeferredCallbacks deferred) {  // NOLINT(performance-unnecessa
   for (const std::function<void()>& later : deferred) later();
 }
 
+// How a client that connects a wire wants its values.
+endpoint::SlotMode wanted_mode(const ServerEndpoint& endpoint, const Question& question) {
+  if (!endpoint.connection().shares_slots()) return endpoint::SlotMode::messages;
+  Decoder decoder = question.decoder();
+  return endpoint::find_slot_mode(decoder, question.entry, endpoint::slots_element)
+      .value_or(endpoint::SlotMode::messages);
+}
+
+// Of the memories whose slots one client reads, whoever else reads them.
+constexpr channel::SlotBudget::Limits session_slots{.bytes = std::size_t{128} * 1024 * 1024,
+                                                    .count = 64};
+
 }  // namespace
+
+Wires::Wires(ServerEndpoint& endpoint)
+    : endpoint_(endpoint), slot_budget_(std::make_shared<channel::SlotBudget>(session_slots)) {}
 
 void Wires::answer(const Question& question) {
   const auto object = endpoint_.find_object(question.entry.service_path);
@@ -72,8 +88,10 @@ void Wires::answer_packet(const Question& question, const ServedObject& object,
 // may send, before the answer leaves.
 void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                            const Member& member) {
+  if (answer_change(question, *object, member)) return;
   std::shared_ptr<ServedWireEnd> end;
-  while (!(end = connect(question, object, member))) {
+  std::uint64_t slots = 0;
+  while (!(end = connect(question, object, member, slots))) {
     // It was released meanwhile: the client gets the one that is there now.
     auto next = endpoint_.find_object(question.entry.service_path);
     if (next->type != object->type) {
@@ -81,15 +99,42 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
     }
     object = std::move(next);
   }
-  endpoint_.answer_empty(question);
+  answer_connected(question, slots);
   // The notice may have left before the answer, and then is not of what is connected by it.
   if (end->is_released()) end->send_closed();
+}
+
+void Wires::answer_connected(const Question& question, std::uint64_t slots) {
+  if (slots == 0) {
+    endpoint_.answer_empty(question);
+    return;
+  }
+  Writer& writer = endpoint_.begin_answer(question);
+  endpoint::write_slots(writer, slots);
+  writer.entry(endpoint::answer_header(question.entry), 1, 0);
+  endpoint_.finish(question, writer);
+}
+
+// False when the request is not one about the slots of a connected wire.
+bool Wires::answer_change(const Question& question, const ServedObject& object,
+                          const Member& member) {
+  if (!endpoint_.connection().shares_slots()) return false;
+  Decoder decoder = question.decoder();
+  const auto mode =
+      endpoint::find_slot_mode(decoder, question.entry, endpoint::slots_again_element);
+  if (!mode) return false;
+  const auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object.path, member.name));
+  if (!end || !end->is_open()) {
+    throw Error(ErrorCode::service_error, "Invalid wire connection");
+  }
+  answer_connected(question, end->offered().change(end, *mode));
+  return true;
 }
 
 // Null when the object is no longer the one at its path.
 std::shared_ptr<ServedWireEnd> Wires::connect(const Question& question,
                                               const std::shared_ptr<const ServedObject>& object,
-                                              const Member& member) {
+                                              const Member& member, std::uint64_t& slots) {
   auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
   if (!end) {
     end = std::make_shared<ServedWireEnd>(endpoint_.shared_from_this(), object, member);
@@ -111,7 +156,7 @@ std::shared_ptr<ServedWireEnd> Wires::connect(const Question& question,
     }
     // Whoever has changed meanwhile what the session may do has not found it in the table.
     if (!endpoint_.is_still_allowed(question)) throw ServerEndpoint::no_longer_allowed();
-    offered(*object->skeleton, member).join(end);
+    slots = offered(*object->skeleton, member).join(end, wanted_mode(endpoint_, question));
   } catch (...) {
     give_up();
     throw;
@@ -175,6 +220,10 @@ std::size_t Wires::end_if(const Choice& is_over) {
   }
   for (const auto& end : over) end->close();
   return over.size();
+}
+
+void Wires::renew_slots() {
+  for (const auto& end : table_.all()) static_cast<ServedWireEnd&>(*end).offered().renew_slots();
 }
 
 void Wires::release(std::string_view path) {

@@ -3,6 +3,13 @@
 //   shared_memory_peer FOLDER serve       a counter; says `ready URL`
 //   shared_memory_peer FOLDER call URL    calls one without end; says `calling` after the first
 //   call
+//   shared_memory_peer FOLDER publish     publishes wires without end; says `ready URL`
+//   shared_memory_peer FOLDER read URL    reads these without end; says `reading` after the first
+//   value, and `at N` when it has read one whose number it has not said before
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -10,6 +17,7 @@
 
 #include "rr/node.hpp"
 #include "runtime/cpp/src/node/testing/counter.hpp"
+#include "runtime/cpp/src/node/testing/wired.hpp"
 
 namespace {
 
@@ -29,6 +37,35 @@ rr::NodeOptions options(const std::string& folder) {
   }
 }
 
+[[noreturn]] void publish(const rr::testing::Wired& wired) {
+  for (double value = 1;; ++value) {
+    wired.level().set_in(value);
+    rr::Array<double> trace(static_cast<std::size_t>(value) % 20'000);
+    std::ranges::fill(trace.mutate(), value);
+    wired.trace().set_in(trace);
+  }
+}
+
+// By a function and by looking, small values and large ones. A value of two halves ends it.
+[[noreturn]] void read(rr::testing::WiredStub& wired) {
+  auto level = wired.level().connect();
+  auto trace = wired.trace().connect();
+  std::atomic<double> seen{0};
+  const rr::Subscription subscription =
+      level.on_in([&](double value, const rr::TimeSpec& /*time*/) { seen = value; });
+  if (!trace.wait_in(rr::testing::plenty)) std::abort();
+  std::cout << "reading" << std::endl;
+  double said = 0;
+  while (true) {
+    const rr::Array<double> value = trace.in();
+    if (!value.empty() && value[0] != value[value.size() - 1]) std::abort();
+    if (!value.empty() && std::fmod(value[0], 2000) == 0 && value[0] != said) {
+      said = value[0];
+      std::cout << "at " << said << std::endl;
+    }
+  }
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -44,7 +81,18 @@ int main(int count, char** words) {
     }
     return 0;
   }
+  if (arguments[1] == "publish") {
+    const auto wired = std::make_shared<rr::testing::Wired>();
+    node.register_service("wired", wired);
+    node.listen("rr+local://");
+    std::cout << "ready rr+local:///?nodeid=" << node.id().text() << "&service=wired" << std::endl;
+    publish(*wired);
+  }
   if (arguments.size() != 3) return 2;
+  if (arguments[1] == "read") {
+    auto client = node.connect<rr::testing::WiredStub>(arguments[2]);
+    read(*client);
+  }
   auto client = node.connect<rr::testing::CounterStub>(arguments[2]);
   client->get_value();
   std::cout << "calling" << std::endl;

@@ -25,9 +25,12 @@ namespace rr::platform {
 namespace {
 
 constexpr int size_seals = F_SEAL_SHRINK | F_SEAL_GROW;
+// Mappings that exist stay writable, and there are no others. Linux has it since 5.1; before that,
+// sealing fails.
+constexpr int reading_seals = size_seals | F_SEAL_FUTURE_WRITE;
 
-SharedMemory map(int handle, std::size_t size, std::error_code& error) {
-  void* const bytes = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, handle, 0);
+SharedMemory map(int handle, std::size_t size, int protection, std::error_code& error) {
+  void* const bytes = ::mmap(nullptr, size, protection, MAP_SHARED, handle, 0);
   if (bytes == MAP_FAILED) {
     error = last_error();
     return {};
@@ -36,11 +39,38 @@ SharedMemory map(int handle, std::size_t size, std::error_code& error) {
 }
 
 // A file of another kind may block whoever looks at a page, or have none to give.
-bool is_sealed_memory(int handle) {
+bool is_sealed_memory(int handle, int wanted) {
   const int seals = ::fcntl(handle, F_GET_SEALS);
   struct statfs system {};
-  return seals != -1 && (seals & size_seals) == size_seals && ::fstatfs(handle, &system) == 0 &&
+  return seals != -1 && (seals & wanted) == wanted && ::fstatfs(handle, &system) == 0 &&
          static_cast<unsigned long>(system.f_type) == TMPFS_MAGIC;
+}
+
+SharedMemory make(std::size_t size, int seals, Descriptor& handle, std::error_code& error) {
+  Descriptor made(::memfd_create("robdef", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!made || ::ftruncate(made.get(), static_cast<off_t>(size)) != 0) {
+    error = last_error();
+    return {};
+  }
+  SharedMemory memory = map(made.get(), size, PROT_READ | PROT_WRITE, error);
+  if (!memory) return {};
+  if (::fcntl(made.get(), F_ADD_SEALS, seals | F_SEAL_SEAL) != 0) {
+    error = last_error();
+    return {};
+  }
+  handle = std::move(made);
+  return memory;
+}
+
+SharedMemory map_received(const Descriptor& handle, std::size_t largest, int seals, int protection,
+                          std::error_code& error) {
+  struct stat file {};
+  if (!handle || !is_sealed_memory(handle.get(), seals) || ::fstat(handle.get(), &file) != 0 ||
+      file.st_size <= 0 || static_cast<std::uintmax_t>(file.st_size) > largest) {
+    error = std::make_error_code(std::errc::invalid_argument);
+    return {};
+  }
+  return map(handle.get(), static_cast<std::size_t>(file.st_size), protection, error);
 }
 
 // Room for what passes handles along with bytes.
@@ -81,26 +111,21 @@ SharedMemory::~SharedMemory() {
 }
 
 SharedMemory make_shared_memory(std::size_t size, Descriptor& handle, std::error_code& error) {
-  Descriptor made(::memfd_create("robdef", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (!made || ::ftruncate(made.get(), static_cast<off_t>(size)) != 0 ||
-      ::fcntl(made.get(), F_ADD_SEALS, size_seals | F_SEAL_SEAL) != 0) {
-    error = last_error();
-    return {};
-  }
-  SharedMemory memory = map(made.get(), size, error);
-  if (memory) handle = std::move(made);
-  return memory;
+  return make(size, size_seals, handle, error);
 }
 
 SharedMemory map_shared_memory(const Descriptor& handle, std::size_t largest,
                                std::error_code& error) {
-  struct stat file {};
-  if (!handle || !is_sealed_memory(handle.get()) || ::fstat(handle.get(), &file) != 0 ||
-      file.st_size <= 0 || static_cast<std::uintmax_t>(file.st_size) > largest) {
-    error = std::make_error_code(std::errc::invalid_argument);
-    return {};
-  }
-  return map(handle.get(), static_cast<std::size_t>(file.st_size), error);
+  return map_received(handle, largest, size_seals, PROT_READ | PROT_WRITE, error);
+}
+
+SharedMemory make_published_memory(std::size_t size, Descriptor& handle, std::error_code& error) {
+  return make(size, reading_seals, handle, error);
+}
+
+SharedMemory map_published_memory(const Descriptor& handle, std::size_t largest,
+                                  std::error_code& error) {
+  return map_received(handle, largest, reading_seals, PROT_READ, error);
 }
 
 std::ptrdiff_t send_with_handle(int socket, std::span<const std::byte> bytes,

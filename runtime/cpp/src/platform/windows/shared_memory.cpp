@@ -25,6 +25,18 @@ SharedMemory map_shared_memory(const Descriptor& /*handle*/, std::size_t /*large
   return {};
 }
 
+SharedMemory make_published_memory(std::size_t /*size*/, Descriptor& /*handle*/,
+                                   std::error_code& error) {
+  error = there_is_none();
+  return {};
+}
+
+SharedMemory map_published_memory(const Descriptor& /*handle*/, std::size_t /*largest*/,
+                                  std::error_code& error) {
+  error = there_is_none();
+  return {};
+}
+
 std::ptrdiff_t send_with_handle(int /*socket*/, std::span<const std::byte> /*bytes*/,
                                 const Descriptor& /*handle*/) {
   return broken;

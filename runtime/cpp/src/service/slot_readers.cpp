@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/slot_readers.hpp"
+
+#include <algorithm>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "runtime/cpp/src/platform/random.hpp"
+
+namespace rr::service {
+namespace {
+
+// A memory, and its share of the node's for as long as anybody writes to it.
+struct CountedMemory {
+  channel::SlotShare share;
+  std::unique_ptr<channel::SlotWriter> writer;
+};
+
+// What a reader knows it by. Never 0, which says that there is none.
+std::uint64_t random_id() {
+  std::uint64_t id = 0;
+  platform::fill_random(std::as_writable_bytes(std::span(&id, 1)));
+  return std::max<std::uint64_t>(id, 1);
+}
+
+}  // namespace
+
+std::size_t SlotReaders::find(const ServedWireEnd& end) const {
+  const auto found = std::find_if(readers_.begin(), readers_.end(),
+                                  [&](const Reader& reader) { return reader.end == &end; });
+  return static_cast<std::size_t>(found - readers_.begin());
+}
+
+bool SlotReaders::make(std::size_t value_size,
+                       const std::shared_ptr<channel::SlotBudget>& of_node) {
+  const auto sizes = channel::SlotSizes::for_value(value_size);
+  if (sizes.slot == 0) return false;
+  auto counted = std::make_shared<CountedMemory>();
+  counted->share = channel::SlotShare(of_node, sizes.memory());
+  if (!counted->share.is_drawn()) return false;
+  std::error_code error;
+  counted->writer = channel::SlotWriter::make(sizes, random_id(), error);
+  if (!counted->writer) return false;
+  channel::SlotWriter* const writer = counted->writer.get();
+  memory_ = std::shared_ptr<channel::SlotWriter>(std::move(counted), writer);
+  return true;
+}
+
+bool SlotReaders::has_restricted() const {
+  return std::any_of(readers_.begin(), readers_.end(),
+                     [](const Reader& reader) { return reader.is_restricted; });
+}
+
+bool SlotReaders::add(const ServedWireEnd& end, bool is_restricted, std::size_t value_size,
+                      const std::shared_ptr<channel::SlotBudget>& of_node,
+                      const std::shared_ptr<channel::SlotBudget>& of_session) {
+  if (!memory_ && !make(value_size, of_node)) return false;
+  channel::SlotShare share(of_session, memory_->sizes().memory());
+  if (!share.is_drawn()) {
+    if (readers_.empty()) memory_.reset();
+    return false;
+  }
+  readers_.push_back({&end, is_restricted, false, std::move(share)});
+  return true;
+}
+
+void SlotReaders::set_woken(const ServedWireEnd& end, bool is_woken) {
+  const std::size_t place = find(end);
+  if (place == readers_.size() || readers_[place].is_woken == is_woken) return;
+  readers_[place].is_woken = is_woken;
+  if (is_woken) {
+    memory_->add_sleeper();
+  } else {
+    memory_->remove_sleeper();
+  }
+}
+
+bool SlotReaders::remove(const ServedWireEnd& end) {
+  const std::size_t place = find(end);
+  if (place == readers_.size()) return false;
+  set_woken(end, false);
+  readers_.erase(readers_.begin() + static_cast<std::ptrdiff_t>(place));
+  if (readers_.empty()) memory_.reset();
+  return true;
+}
+
+std::shared_ptr<channel::SlotWriter> SlotReaders::clear() {
+  readers_.clear();
+  return std::exchange(memory_, nullptr);
+}
+
+}  // namespace rr::service
