@@ -25,7 +25,7 @@
 namespace robdef {
 namespace {
 
-constexpr std::array commands = {
+constexpr std::array command_rows = {
     CommandRow{Command::inspect, "inspect", "[OPTION...] FILE... | --page [URL]",
                "print what a recording holds, or open a page that shows devices",
                "Prints a line for each message of a recording: the time since its beginning,\n"
@@ -77,7 +77,7 @@ constexpr std::array commands = {
                "interrupted.\n"},
 };
 
-constexpr std::array options = {
+constexpr std::array option_rows = {
     OptionRow{"--json",
               "",
               "",
@@ -453,9 +453,9 @@ CommandTable made() {
   const auto add = [](auto& rows, const auto& others) {
     rows.insert(rows.end(), others.begin(), others.end());
   };
-  add(table.commands, commands);
+  add(table.commands, command_rows);
   add(table.commands, live::commands());
-  add(table.options, options);
+  add(table.options, option_rows);
   add(table.options, live::options());
   table.hidden = {live::completing_command()};
   table.missing = missing;

@@ -100,10 +100,10 @@ class Server::Core final : public CarrierHandler {
   /// limit.
   void end_sessions() {
     std::promise<void> done;
-    worker_.post([&] {
+    worker_->post([&] {
       for (const auto& service : services_) service->end_sessions();
       // Requests are posted as well: this comes after them.
-      worker_.post([&] {
+      worker_->post([&] {
         pump();
         done.set_value();
       });

@@ -42,7 +42,6 @@ Index::Index(const ast::Program& program) {
   for (const ast::ProgramFile& one : program.files) declare(one.file);
   for (const ast::ProgramFile& one : program.files) declare_usings(one.file);
   if (!program.files.empty()) note_file(program.files.front().file);
-  std::ranges::stable_sort(occurrences_, {}, [](const Occurrence& one) { return one.span.begin; });
 }
 
 const Symbol* Index::add(Symbol symbol) {
@@ -167,16 +166,22 @@ const Symbol* Index::part_of(const Symbol& owner, std::string_view name) const {
 }
 
 const Occurrence* Index::at(std::uint32_t offset) const {
-  auto behind =
-      std::upper_bound(occurrences_.begin(), occurrences_.end(), offset,
-                       [](std::uint32_t at, const Occurrence& one) { return at < one.span.begin; });
-  if (behind == occurrences_.begin()) return nullptr;
-  const Occurrence& before = *std::prev(behind);
+  const auto after = occurrence_after(offset);
+  if (after == occurrences_.begin()) return nullptr;
+  const Occurrence& before = *std::prev(after);
   return offset <= before.span.end ? &before : nullptr;
 }
 
+// Most come in the order of the text.
 void Index::note(Span span, const Symbol* symbol, bool is_declaration) {
-  if (symbol != nullptr) occurrences_.push_back({span, symbol, is_declaration});
+  if (symbol == nullptr) return;
+  occurrences_.insert(occurrence_after(span.begin), {span, symbol, is_declaration});
+}
+
+std::vector<Occurrence>::const_iterator Index::occurrence_after(std::uint32_t offset) const {
+  return std::upper_bound(
+      occurrences_.begin(), occurrences_.end(), offset,
+      [](std::uint32_t at, const Occurrence& one) { return at < one.span.begin; });
 }
 
 void Index::note_name(const ast::File& file, const ast::Name& name) {

@@ -94,6 +94,9 @@ class Index {
   [[nodiscard]] const Symbol& declared(Span name) const;
   const Symbol& note_declared(Span name);
   void note(Span span, const Symbol* symbol, bool is_declaration = false);
+  /// The first one that begins after a place.
+  [[nodiscard]] std::vector<Occurrence>::const_iterator occurrence_after(
+      std::uint32_t offset) const;
   void note_name(const ast::File& file, const ast::Name& name);
   void note_type(const ast::File& file, const ast::TypeRef& type);
   void note_modifiers(const Symbol& owner, const std::vector<ast::Modifier>& modifiers);
@@ -107,7 +110,7 @@ class Index {
   std::unordered_map<std::string_view, const Symbol*> services_;
   std::unordered_map<const Symbol*, std::unordered_map<std::string_view, const Symbol*>> parts_;
   std::unordered_map<std::uint64_t, const Symbol*> places_;
-  std::vector<Occurrence> occurrences_;
+  std::vector<Occurrence> occurrences_;  // by their places
   std::vector<std::pair<const Symbol*, const Symbol*>> same_members_;
 };
 

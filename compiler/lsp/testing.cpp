@@ -96,13 +96,17 @@ std::vector<std::string> Editor::codes(std::string_view name) {
 
 std::string with_edits(std::string text, const Json& edits) {
   // From the end, so that the places of the others stay.
-  std::vector<Json> sorted(edits.begin(), edits.end());
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Json& a, const Json& b) {
-    return range_from(b["range"]).start < range_from(a["range"]).start;
+  std::vector<const Json*> sorted;
+  for (const Json& edit : edits) sorted.push_back(&edit);
+  const auto start = [](const Json* edit) { return range_from((*edit)["range"]).start; };
+  // Those at the same place stay in their order.
+  std::sort(sorted.begin(), sorted.end(), [&](const Json* a, const Json* b) {
+    return start(a) != start(b) ? start(b) < start(a) : a < b;
   });
   Text result(std::move(text));
-  for (const Json& edit : sorted) {
-    result.replace(range_from(edit["range"]), edit["newText"].get<std::string>(), Encoding::utf16);
+  for (const Json* edit : sorted) {
+    result.replace(range_from((*edit)["range"]), (*edit)["newText"].get<std::string>(),
+                   Encoding::utf16);
   }
   return result.bytes();
 }

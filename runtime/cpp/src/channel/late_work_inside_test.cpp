@@ -40,7 +40,7 @@ TEST(LateWork, IsDoneInOrderOverSeveralThreads) {
     }
   }
   ASSERT_EQ(done.size(), 100U);
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(done[i], i);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(done[static_cast<std::size_t>(i)], i);
 }
 
 TEST(LateWork, MayOwnItself) {

@@ -117,7 +117,9 @@ TEST_F(SharedRingTest, IsAQueueForAllSizes) {
   std::size_t turns = 0;
   while (turns < 300 * ring_size) {
     std::string text(random() % (random() % 8 == 0 ? 2 * ring_size : 100), ' ');
-    for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>(next + i);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      text[i] = static_cast<char>(static_cast<std::size_t>(next) + i);
+    }
     const std::ptrdiff_t written = write(text);
     ASSERT_EQ(written,
               static_cast<std::ptrdiff_t>(std::min(text.size(), ring_size - model.size())));

@@ -79,7 +79,7 @@ TEST(ThreadShares, AnyNumberOfSessionsOfOneAddressLeavesTheReserveToOthers) {
 
 TEST(ThreadShares, WhenNoneIsLeftOnlyThoseGoOnThatHaveShownToBeShort) {
   Node node;
-  for (unsigned address = 0; node.held != 126; ++address) take_all(node, 1);
+  while (node.held != 126) take_all(node, 1);
   EXPECT_EQ(node.ask(0, 0, Pace::quick), Handling::in_place);
   EXPECT_EQ(node.ask(0, 0, Pace::unknown), Handling::later);
   EXPECT_EQ(node.ask(0, 0, Pace::slow), Handling::later);
