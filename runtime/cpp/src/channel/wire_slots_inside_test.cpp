@@ -322,7 +322,6 @@ TEST_F(WireSlots, AValueIsNeverTornNorOlderThanTheOneBefore) {
 class LyingPublisher : public ::testing::Test {
  protected:
   static constexpr std::size_t newest_at = 0x100;
-  static constexpr std::size_t bell_at = 0x140;
   static constexpr std::size_t heads_at = 0x200;
 
   void SetUp() override {

@@ -39,7 +39,7 @@ struct Opened {
 };
 
 struct Situation {
-  explicit Situation(State state) : state_(state) {
+  explicit Situation(State state) {
     path = state == other_client ? "guarded.own" : "guarded.child[a]";
     if (state == unconnected) {
       client.emplace(service);
@@ -81,9 +81,6 @@ struct Situation {
   std::optional<GuardedClient> client;  // the one that asks
   std::shared_ptr<Guarded> object;      // that what is opened belongs to
   Opened opened;
-
- private:
-  const State state_;
 };
 
 constexpr int silence = -1;

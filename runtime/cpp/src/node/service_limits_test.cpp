@@ -245,7 +245,6 @@ TEST(ServiceLimits, TheAnswersThatAServiceOwesASessionAreCounted) {
 }
 
 TEST(ServiceLimits, AnswersOwedToClientsThatHaveLeftTakeNothingFromOthers) {
-  constexpr std::uint32_t mib = 1024 * 1024;
   NodeOptions small;
   small.limits.message_size = 2 * mib;
   small.budget.sessions = 6 * mib;
@@ -257,7 +256,7 @@ TEST(ServiceLimits, AnswersOwedToClientsThatHaveLeftTakeNothingFromOthers) {
     ASSERT_TRUE(eventually([&] { return counter->owed() == i; }));
     client.close();
   }
-  EXPECT_EQ(pair.connect()->blob(mib).size(), mib);
+  EXPECT_EQ(pair.connect()->blob(std::uint32_t{mib}).size(), mib);
   EXPECT_NO_THROW(counter->answer_all());
 }
 
