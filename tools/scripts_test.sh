@@ -48,7 +48,7 @@ said=$(
   stop_jobs
   wait "$beside_job" || echo "stopped"
 )
-for line in '^first +[0-9]+ s  ok$' '^second +1 s  ok$' '^third +0 s  FAILED$' '^one failed$' '^stopped$'; do
+for line in '^first +[0-9]+ s  ok$' '^second +[0-9]+ s  ok$' '^third +[0-9]+ s  FAILED$' '^one failed$' '^stopped$'; do
   grep -qE "$line" <<<"$said" || complain "parts beside others: no $line in: $said"
 done
 
