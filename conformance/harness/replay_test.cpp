@@ -5,6 +5,7 @@
 #include <future>
 #include <stdexcept>
 
+#include "conformance/harness/broker.hpp"
 #include "conformance/harness/client_replay.hpp"
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/service_replay.hpp"
@@ -76,7 +77,8 @@ TEST_F(Replay, OverEveryChannelTheSameIsPlayedAndCompared) {
   answer.decoded["entries"][0]["elements"][0]["value"] = Json::array({43});
   answer.bytes = rr::write_tree(message_of_json(answer.decoded));
   for (const std::string& channel : channel_names()) {
-    if (channel == "intra") continue;  // there are no bytes
+    // There are no bytes, or they pass gateways, which conformance.mqtt and conformance.nats have.
+    if (channel == "intra" || is_over_broker(channel)) continue;
     SCOPED_TRACE(channel);
     const BothResults same = play(recorded, recorded, channel);
     EXPECT_EQ(same.service.checked, static_cast<int>(recorded.steps.size()));

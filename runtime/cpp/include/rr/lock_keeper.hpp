@@ -21,14 +21,14 @@ struct LockRequest {
   enum class Operation : std::uint8_t {
     lock_for_user,     ///< LockOwner::user
     lock_for_session,  ///< LockOwner::session
-    unlock,
-    enter_monitor,
-    go_on_entering,  ///< after an answer that it is to wait on
-    exit_monitor,
+    unlock,            ///< a lock of either kind
+    enter_monitor,     ///< of the object; once for each session
+    go_on_entering,    ///< after an answer that it is to wait on
+    exit_monitor,      ///< the one that was entered
   };
-  Operation operation = Operation::lock_for_user;
-  std::string path;          ///< of the object, as Stub::rr_path()
-  std::uint32_t client = 0;  ///< number of its endpoint in this node
+  Operation operation = Operation::lock_for_user;  ///< which of them
+  std::string path;                                ///< of the object, as Stub::rr_path()
+  std::uint32_t client = 0;                        ///< number of its endpoint in this node
   /// Of enter_monitor: how long it waits for the monitor; negative: as long as it takes.
   std::chrono::milliseconds timeout{0};
 };

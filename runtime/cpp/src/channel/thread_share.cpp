@@ -68,6 +68,13 @@ Pace ThreadShare::pace() const {
 
 void ThreadShare::note_stall(Time now) {
   const std::uint32_t cost = cost_of_stall_.load(std::memory_order_relaxed);
+  // The system may have run something else: of a session that was never slow one is forgiven, so
+  // that it does not have to wait for all others because of that.
+  const std::uint32_t slowness = slowness_.load(std::memory_order_relaxed);
+  if (pace() == Pace::quick && cost == slow_from && slowness + forgiven < slow_from) {
+    add_slowness(forgiven);
+    return;
+  }
   cost_of_stall_.store(std::min(2 * cost, largest_cost_of_stall), std::memory_order_relaxed);
   calm_.store(0, std::memory_order_relaxed);
   add_slowness(cost);

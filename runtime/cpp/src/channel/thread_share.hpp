@@ -78,7 +78,8 @@ class ThreadShare {
     return !is_slow_.load(std::memory_order_relaxed) && held_.load(std::memory_order_relaxed) == 0;
   }
 
-  /// The polling thread was found in a handler for long. On any thread.
+  /// The polling thread was found in a handler for long. On any thread. One such handler among
+  /// short ones does not make the session slow.
   void note_stall(Time now);
   /// The connection has ended: what is left of it is short.
   void depart() { has_departed_.store(true, std::memory_order_relaxed); }
@@ -94,6 +95,7 @@ class ThreadShare {
   // Long ones count more than short ones make up for: handlers of half a millisecond are slow.
   static constexpr std::uint32_t cost_of_long = 8;
   static constexpr std::uint32_t slow_from = 64;
+  static constexpr std::uint32_t forgiven = 48;  // cost of a stall among short handlers
   static constexpr std::uint32_t largest_cost_of_stall = 1024;
   static constexpr std::uint32_t most_slowness = 4096;
   static constexpr std::uint32_t quick_from = 16;

@@ -109,6 +109,24 @@ TEST(ThreadShares, AHandlerThatStalledThePollingRunsAsideUntilEnoughHaveBeenShor
   EXPECT_EQ(share.pace(), Pace::quick);
 }
 
+// The system may have run something else meanwhile. While all threads but the reserve are held, a
+// slow session waits for as long as that lasts.
+TEST(ThreadShares, OneStallOfASessionThatHasBeenShortIsForgiven) {
+  const auto address = std::make_shared<AddressThreads>("a");
+  ThreadShare share(address);
+  for (int i = 0; i < 16; ++i) share.ran(false);
+  share.note_stall(coarse_now());
+  EXPECT_EQ(share.pace(), Pace::quick);
+  EXPECT_FALSE(ThreadShare(address).is_slow());  // nor is the address blamed
+  for (int i = 0; i < 33; ++i) share.ran(false);
+  share.note_stall(coarse_now());
+  EXPECT_EQ(share.pace(), Pace::quick);
+  for (int i = 0; i < 32; ++i) share.ran(false);
+  share.note_stall(coarse_now());
+  EXPECT_EQ(share.pace(), Pace::slow);
+  EXPECT_TRUE(ThreadShare(address).is_slow());
+}
+
 TEST(ThreadShares, ANewConnectionIsTakenForOneLikeTheOthersOfItsAddress) {
   const auto address = std::make_shared<AddressThreads>("10.0.0.1");
   ThreadShare first(address);

@@ -69,6 +69,7 @@ class Blocking : public Counter {
 TEST(ThreadsOfANode, OneHundredSlowHandlersHoldUpNobody) {
   const auto object = std::make_shared<Blocking>();
   Pair pair({}, {.max_threads = 256}, object);
+  const OpenAtEnd open_at_end(object->gate);
   auto other = pair.connect();
   const auto idle = p99(times_of(300, [&] { other->add(1, 2); }));
   std::vector<Client<CounterStub>> clients;
@@ -90,6 +91,7 @@ TEST(ThreadsOfANode, OneHundredSlowHandlersHoldUpNobody) {
 TEST(ThreadsOfANode, MoreSlowHandlersThanThreadsHoldUpNobodyWhoHasBeenShort) {
   const auto object = std::make_shared<Blocking>();
   Pair pair({.max_threads = 16}, {.max_threads = 256}, object);
+  const OpenAtEnd open_at_end(object->gate);
   auto other = pair.connect();
   const auto idle = p99(times_of(300, [&] { other->add(1, 2); }));
   std::vector<Client<CounterStub>> clients;
