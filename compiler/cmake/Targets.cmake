@@ -29,6 +29,20 @@ if(ROBDEF_CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
+# The address sanitizer of clang is a shared library, as that of g++ is, and found beside the compiler only.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
+  set(library libasan.so)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set(library libclang_rt.asan-${CMAKE_SYSTEM_PROCESSOR}.so)
+  endif()
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${library}
+    OUTPUT_VARIABLE ROBDEF_LIBASAN OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    cmake_path(GET ROBDEF_LIBASAN PARENT_PATH folder)
+    add_link_options(-Wl,-rpath,${folder})
+  endif()
+endif()
+
 find_package(Threads REQUIRED)
 
 # robdef_unity(TARGET SOURCES)
@@ -215,13 +229,7 @@ endfunction()
 # For programs of .NET that load a library of this build: the address sanitizer must be loaded first, and leaves faults and
 # what .NET keeps at its end to .NET.
 set(robdef_managed_environment "")
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
-  set(library libasan.so)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    set(library libclang_rt.asan-${CMAKE_SYSTEM_PROCESSOR}.so)
-  endif()
-  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${library}
-    OUTPUT_VARIABLE ROBDEF_LIBASAN OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(ROBDEF_LIBASAN)
   set(robdef_managed_environment "LD_PRELOAD=${ROBDEF_LIBASAN};ASAN_OPTIONS=detect_leaks=0:handle_segv=0:exitcode=99")
 endif()
 # .NET's own threads, of which the thread sanitizer sees nothing, would be reported as faults: its tests are left out.
