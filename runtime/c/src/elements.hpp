@@ -117,12 +117,12 @@ class Values {
   MessageVersion version_ = MessageVersion::v4;
   bool has_references_ = false;
   std::size_t count_ = 0;
-  Raw* raws_ = few_raws_.data();
-  Parameter* parameters_ = few_parameters_.data();
-  const void** places_ = few_places_.data();
   std::array<Raw, few> few_raws_;
   std::array<Parameter, few> few_parameters_;
   std::array<const void*, few> few_places_;
+  Raw* raws_ = few_raws_.data();
+  Parameter* parameters_ = few_parameters_.data();
+  const void** places_ = few_places_.data();
   std::vector<Raw> raws_memory_;
   std::vector<Parameter> parameters_memory_;
   std::vector<const void*> places_memory_;

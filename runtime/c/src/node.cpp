@@ -47,6 +47,8 @@ NodeOptions read_options(const rr_node_options& given) {
   set(options.request_queue_limit, given.request_queue_limit);
   set(options.max_connections, given.max_connections);
   options.tls = read_tls(given.tls);
+  options.local.shared_memory = given.shared_memory != 0;
+  set(options.spin, given.spin_us);
   return options;
 }
 

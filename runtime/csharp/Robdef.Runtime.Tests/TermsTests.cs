@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
+using System.IO;
+using System.Linq;
 using System.Threading;
 using System.Threading.Tasks;
 using Experimental.Arm;
@@ -39,6 +41,30 @@ public sealed class TermsTests
         Assert.True(told.Wait(s_limit));
         Assert.True(told.Wait(s_limit));
         Assert.Equal(0, end.Unacknowledged);
+    }
+
+    [Theory]
+    [InlineData(false)]
+    [InlineData(true)]
+    public void Nodes_of_one_machine_share_memory_where_both_say_so(bool isShared)
+    {
+        string folder = Directory.CreateTempSubdirectory("robdef").FullName;
+        try
+        {
+            using var serving = new Node(new NodeOptions { SharedMemory = isShared });
+            using Service service = serving.Register("arm", new TestArm());
+            string url = $"rr+local://{folder}/socket";
+            serving.Listen(url);
+            using var node = new Node(new NodeOptions { SharedMemory = true, Spin = TimeSpan.FromMicroseconds(50) });
+            using Client<ArmStub> client = node.Connect<ArmStub>(url + "?service=arm");
+            Assert.Equal(3, client.Root.Add(1, 2));
+            int mapped = File.ReadLines("/proc/self/maps").Count(line => line.Contains("/memfd:robdef", StringComparison.Ordinal));
+            Assert.Equal(isShared ? 2 : 0, mapped);
+        }
+        finally
+        {
+            Directory.Delete(folder, recursive: true);
+        }
     }
 
     [Theory]

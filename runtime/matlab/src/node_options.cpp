@@ -77,6 +77,8 @@ RuntimeOptions read_node_options(const mxArray* given) {
        {"LookAgainPeriod", read_into(tls.look_again_period)},
        {"AuditFile", read_into(audit_file)},
        {"AuditRequests", read_into(node.audit.requests)},
+       {"SharedMemory", read_into(node.local.shared_memory)},
+       {"Spin", read_into(node.spin)},
        {"AllowClearCredentials", read_into(options.allow_clear_credentials)}});
   if (!audit_file.empty()) node.audit.on_event = AuditLog(audit_file);
   return options;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/struct_fields.hpp"
 
+#include <cmath>
+
 #include "rr/error.hpp"
 #include "runtime/matlab/src/call.hpp"
 #include "runtime/matlab/src/credentials.hpp"
@@ -33,6 +35,14 @@ ReadField read_into(bool& flag) {
 
 ReadField read_into(std::chrono::milliseconds& time) {
   return [&](const mxArray* given) { time = to_milliseconds(read_number<double>(given)); };
+}
+
+ReadField read_into(std::chrono::microseconds& time) {
+  return [&](const mxArray* given) {
+    const auto seconds = read_number<double>(given);
+    if (!(seconds >= 0 && seconds <= 1)) throw Misfit("expected seconds from 0 to 1");
+    time = std::chrono::microseconds(std::lround(seconds * 1e6));
+  };
 }
 
 ReadField read_into(std::vector<std::string>& texts) {

@@ -23,6 +23,7 @@ void read_fields(const mxArray* given, const std::string& subject,
 ReadField read_into(std::string& text);
 ReadField read_into(bool& flag);
 ReadField read_into(std::chrono::milliseconds& time);
+ReadField read_into(std::chrono::microseconds& time);  // up to a second
 ReadField read_into(std::vector<std::string>& texts);
 
 }  // namespace rr::matlab

@@ -387,6 +387,16 @@
 %! lines = strsplit(strtrim(fileread(audit)), "\n");
 %! assert(~isempty(strfind(lines{1}, '"event":"connect","outcome":"allowed","service":"rig"')));
 %! assert(any(cellfun(@(line) ~isempty(strfind(line, '"member":"add","operation":"call"')), lines)));
+%! RobotRaconteur.SetNodeOptions(struct('SharedMemory', true, 'Spin', 50e-6));
+%! RobotRaconteur.RegisterServiceType(fullfile(getenv('RR_TEST_FILES'), 'experimental.rig.robdef'));
+%! service = RobotRaconteur.RegisterService('rig', 'experimental.rig.Rig', rr_rig());
+%! RobotRaconteur.Listen(['rr+local://', folder]);
+%! c = RobotRaconteur.ConnectService(['rr+local://', folder, '?service=rig']);
+%! assert(c.add(1, 2), 3);
+%! assert(numel(strfind(fileread('/proc/self/maps'), '/memfd:robdef')), 2);
+%! RobotRaconteur.Shutdown();
+%! fails(@() RobotRaconteur.SetNodeOptions(struct('Spin', -1)), 'RobotRaconteur:DataTypeMismatch', ...
+%!   'node options, Spin: expected seconds from 0 to 1');
 %! RobotRaconteur.SetNodeOptions(struct('CertificateFile', '/no/such/certificate.pem'));
 %! fails(@() rrmex('node'), 'RobotRaconteur:InvalidConfiguration', ...
 %!   '`/no/such/certificate.pem`: it cannot be read');

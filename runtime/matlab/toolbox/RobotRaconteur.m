@@ -270,7 +270,9 @@ classdef RobotRaconteur
       %   and RevocationFiles (cells), Pins (a containers.Map of node ids and SHA-256), RequireTls,
       %   MustCertifyClients, TrustSystemAuthorities, AcceptsOutdatedLists, LookAgainPeriod;
       %   AuditFile (lines of JSON: who connects, logs in, is refused), AuditRequests (handled
-      %   requests, too); AllowClearCredentials (log in without TLS where discovery has found a URL);
+      %   requests, too); SharedMemory (messages and wires of rr+local go through memory where the
+      %   other node has it, too), Spin (seconds, up to 0.001, that a waiting thread looks for a
+      %   message before it sleeps, with SharedMemory); AllowClearCredentials (log in without TLS where discovery has found a URL);
       %   ClientOffer and ServerOffer: structs with any of MessageV4, StringTable, CombinedConnect.
       rrmex('node_options', options);
     end

@@ -59,6 +59,12 @@ typedef struct rr_node_options {
   uint64_t max_connections;       /**< that may be open to this node at once; 0: any number */
   const rr_tls_options* tls;      /**< minor version 4, as the next; may be NULL */
   const rr_audit_options* audit;  /**< may be NULL */
+  /** 1: messages and wires of `rr+local` go through memory that both nodes map, where both have
+   * this (minor version 5, as the next; docs/reference/shared_memory.md). */
+  uint32_t shared_memory;
+  /** For so long a thread that waits for a message looks for it before it sleeps, with shared
+   * memory only: microseconds, 1000 at most. */
+  uint32_t spin_us;
 } rr_node_options;
 
 /** `options` may be NULL. */

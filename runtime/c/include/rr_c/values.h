@@ -23,7 +23,7 @@ extern "C" {
 /** Major part in the upper 16 bits, minor in the lower. A program refuses another major version
  * than that of the header it was made with, and a lower minor one. Minor versions add functions,
  * and fields at the end of structs that have a size. */
-#define RR_ABI_VERSION 0x00010004u
+#define RR_ABI_VERSION 0x00010005u
 
 /** The version of the library that is loaded. To be called first. */
 RR_API uint32_t rr_abi_version(void);

@@ -244,7 +244,8 @@ TEST(StderrLog, GivesTheJournalItsPriorities) {
     journal(record(level, "x"));
   }
   ::setenv("JOURNAL_STREAM", (own + "1").c_str(), 1);  // that of another stream
-  StderrLog(LogLevel::debug)(record(LogLevel::error, "y"));
+  const StderrLog plain(LogLevel::debug);
+  plain(record(LogLevel::error, "y"));
   ::unsetenv("JOURNAL_STREAM");
   EXPECT_EQ(caught.text(),
             "<7>robotraconteur: debug: x\n<6>robotraconteur: info: x\n"

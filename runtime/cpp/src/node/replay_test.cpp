@@ -136,7 +136,7 @@ TEST_F(Replaying, MessagesAreCutOutOfAnyPieces) {
   }
   std::vector<std::byte> stream;
   for (const auto& message : messages) stream.insert(stream.end(), message.begin(), message.end());
-  for (const std::size_t piece : {1, 3, 10, 11, 100, 4096, 1'000'000}) {
+  for (const auto piece : std::initializer_list<std::size_t>{1, 3, 10, 11, 100, 4096, 1'000'000}) {
     replay::Cutter cutter;
     std::vector<std::vector<std::byte>> cut;
     for (std::size_t at = 0; at < stream.size(); at += piece) {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <thread>
@@ -188,7 +189,7 @@ TEST_F(Tapping, AFileThatWasCutOffIsReadUpToThere) {
     Recorder tap(path);
     const std::uint32_t number = tap.opened({});
     tap.agreed(number, {});
-    for (std::size_t size : {1, 20, 100}) {
+    for (const auto size : std::initializer_list<std::size_t>{1, 20, 100}) {
       const std::vector<std::byte> bytes(size, std::byte{0x5A});
       const Piece piece{bytes.data(), bytes.size()};
       tap.message(number, Direction::to_client, {&piece, 1});

@@ -44,6 +44,8 @@ public sealed class Node : IDisposable
             MemoryTransferLimit = (uint)options.MemoryTransferLimit,
             Tls = SecurityTerms.Of(options.Tls, scope),
             Audit = SecurityTerms.Of(options.Audit, scope),
+            SharedMemory = options.SharedMemory ? 1u : 0,
+            SpinUs = (uint)Math.Clamp(options.Spin.TotalMicroseconds, 0, 1000),
         };
         Faults = new Faults(options.EnableDetailedErrors, options.Log);
         Callbacks = new ServedSession("that a service has called", Faults);

@@ -79,6 +79,17 @@ public sealed record NodeOptions
 
     /// <summary>Where what clients do is recorded.</summary>
     public AuditOptions? Audit { get; init; }
+
+    /// <summary>
+    /// Messages and wires of `rr+local` go through memory that both nodes map, where both have this; on Linux.
+    /// </summary>
+    public bool SharedMemory { get; init; }
+
+    /// <summary>
+    /// For so long a thread that waits for a message looks for it before it sleeps, with <see cref="SharedMemory"/> only:
+    /// answers come sooner, and a processor is busy meanwhile. A millisecond at most.
+    /// </summary>
+    public TimeSpan Spin { get; init; }
 }
 
 /// <summary>How a client connects.</summary>

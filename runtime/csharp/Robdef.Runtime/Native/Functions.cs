@@ -8,7 +8,7 @@ namespace Robdef.Runtime.Native;
 internal static unsafe partial class Functions
 {
     private const string Library = "robdef_c";
-    private const uint Version = 0x00010004;
+    private const uint Version = 0x00010005;
 
     static Functions()
     {

@@ -107,6 +107,8 @@ internal unsafe struct RrNodeOptions
     public ulong MaxConnections;
     public RrTlsOptions* Tls;
     public RrAuditOptions* Audit;
+    public uint SharedMemory;
+    public uint SpinUs;
 }
 
 [StructLayout(LayoutKind.Sequential)]

@@ -27,7 +27,8 @@ constexpr std::array<speed_t, std::size(serial_rates)> speeds = {
 
 speed_t speed_of(std::uint32_t baud) {
   const auto* const found = std::find(std::begin(serial_rates), std::end(serial_rates), baud);
-  return found == std::end(serial_rates) ? B0 : speeds[std::distance(serial_rates, found)];
+  if (found == std::end(serial_rates)) return B0;
+  return speeds[static_cast<std::size_t>(std::distance(serial_rates, found))];
 }
 
 std::string reason(int error) {
