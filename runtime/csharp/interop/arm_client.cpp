@@ -54,7 +54,7 @@ void values(a::ArmStub& arm) {
 void errors(a::ArmStub& arm) {
   try {
     arm.fail("rusty");
-    EXPECT(!"it has not failed");
+    EXPECT(false && "it has not failed");
   } catch (const a::Stuck& stuck) {
     EXPECT(stuck.message() == "rusty");
     EXPECT(stuck.subname() == "by.test");
@@ -62,7 +62,7 @@ void errors(a::ArmStub& arm) {
   }
   try {
     arm.get_joints(4);
-    EXPECT(!"there is a joint 4");
+    EXPECT(false && "there is a joint 4");
   } catch (const rr::Error& error) {
     EXPECT(error.code() == rr::ErrorCode::invalid_argument);
   }
@@ -105,7 +105,7 @@ void callbacks(a::ArmStub& arm) {
   arm.ask().set([](std::int32_t) -> std::int32_t { throw a::Stuck("no answer"); });
   try {
     arm.ask_back(7);
-    EXPECT(!"it has not failed");
+    EXPECT(false && "it has not failed");
   } catch (const a::Stuck& stuck) {
     EXPECT(stuck.message() == "no answer");
   }

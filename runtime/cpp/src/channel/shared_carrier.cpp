@@ -135,10 +135,16 @@ std::ptrdiff_t SharedCarrier::take_bells() {
   return size;
 }
 
-bool SharedCarrier::pass_slots(const SlotWriter& slots) const {
+// The system counts what a client leaves in its socket for the user of this process.
+bool SharedCarrier::pass_slots(const SlotWriter& slots) {
   constexpr std::array<std::byte, 1> bell{};
-  return is_server_ && has_slots_ &&
-         platform::send_with_handle(socket_, bell, slots.handle()) == std::ptrdiff_t{bell.size()};
+  if (!is_server_ || !has_slots_) return false;
+  if (!platform::has_unreceived(socket_)) unreceived_ = 0;
+  if (unreceived_.fetch_add(1) >= PassedSlots::most) {
+    --unreceived_;
+    return false;
+  }
+  return platform::send_with_handle(socket_, bell, slots.handle()) == std::ptrdiff_t{bell.size()};
 }
 
 std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id) {

@@ -61,8 +61,9 @@ class SharedCarrier final : public Carrier {
   /// Any thread.
   [[nodiscard]] bool has_slots() const { return has_slots_; }
   /// By the server, any thread: gives the client a memory, which is there before all that is sent
-  /// afterwards. False when the socket does not take it.
-  [[nodiscard]] bool pass_slots(const SlotWriter& slots) const;
+  /// afterwards. False when the socket does not take it, or about PassedSlots::most are in it that
+  /// the client has not received.
+  [[nodiscard]] bool pass_slots(const SlotWriter& slots);
   /// By the client, with the read lease: takes one that the server has passed; null for none.
   std::unique_ptr<SlotReader> take_slots(std::uint64_t id);
 
@@ -89,7 +90,8 @@ class SharedCarrier final : public Carrier {
   bool has_slots_ = false;
   std::atomic<Look> must_look_{Look::once};
   std::atomic<bool> is_interrupted_{false};
-  std::atomic<bool> is_cheated_{false};  // an index of the other side was wrong
+  std::atomic<bool> is_cheated_{false};     // an index of the other side was wrong
+  std::atomic<std::size_t> unreceived_{0};  // passed since the socket was seen to be empty
 
   // With the read lease.
   bool has_ended_ = false;

@@ -100,6 +100,19 @@ TEST_F(SharedCarrierTest, PassesMemoriesOfWiresWithBells) {
   EXPECT_TRUE(client_->has_taken_bells());
 }
 
+TEST_F(SharedCarrierTest, PassesNoMoreMemoriesThanAClientMayLeaveInItsSocket) {
+  std::error_code error;
+  const auto slots = SlotWriter::make(SlotSizes::for_value(100), 1, error);
+  server_->use_slots();
+  client_->use_slots();
+  for (std::size_t i = 0; i < PassedSlots::most; ++i) EXPECT_TRUE(server_->pass_slots(*slots)) << i;
+  EXPECT_FALSE(server_->pass_slots(*slots));
+  EXPECT_FALSE(server_->pass_slots(*slots));
+  while (client_->take_slots(1) != nullptr) {
+  }
+  EXPECT_TRUE(server_->pass_slots(*slots)) << "all have been received";
+}
+
 TEST_F(SharedCarrierTest, RingsOnceForAServerThatWatches) {
   send(*client_, "one");
   send(*client_, "two");

@@ -130,7 +130,7 @@ bool StreamConnection::shares_slots() const {
 }
 
 bool StreamConnection::pass_slots(const SlotWriter& slots) {
-  const SharedCarrier* const shared = layers_.shared();
+  SharedCarrier* const shared = layers_.shared();
   return shared != nullptr && !is_closed() && shared->pass_slots(slots);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
+#include <initializer_list>
 #include <limits>
 #include <mutex>
 #include <thread>

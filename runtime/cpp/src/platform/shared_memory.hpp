@@ -62,6 +62,9 @@ SharedMemory map_published_memory(const Descriptor& handle, std::size_t largest,
 /// As send(), on a local socket, with a handle that travels with the first byte.
 std::ptrdiff_t send_with_handle(int socket, std::span<const std::byte> bytes,
                                 const Descriptor& handle);
+/// Whether the other side of a local socket has yet to receive something that was sent. False where
+/// the system does not say.
+bool has_unreceived(int socket);
 /// As receive() without waiting. A handle that comes with the bytes is left in `handle`; of several
 /// the first.
 std::ptrdiff_t receive_with_handle(int socket, std::span<std::byte> room, Descriptor& handle);

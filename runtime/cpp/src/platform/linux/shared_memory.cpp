@@ -4,7 +4,9 @@
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <linux/magic.h>
+#include <linux/sockios.h>
 #include <sched.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -144,6 +146,11 @@ std::ptrdiff_t send_with_handle(int socket, std::span<const std::byte> bytes,
     if (size >= 0) return size;
     if (errno != EINTR) return failed_transfer();
   }
+}
+
+bool has_unreceived(int socket) {
+  int waiting = 0;
+  return ::ioctl(socket, SIOCOUTQ, &waiting) == 0 && waiting != 0;
 }
 
 std::ptrdiff_t receive_with_handle(int socket, std::span<std::byte> room, Descriptor& handle) {

@@ -42,6 +42,8 @@ std::ptrdiff_t send_with_handle(int /*socket*/, std::span<const std::byte> /*byt
   return broken;
 }
 
+bool has_unreceived(int /*socket*/) { return false; }
+
 std::ptrdiff_t receive_with_handle(int socket, std::span<std::byte> room, Descriptor& /*handle*/) {
   return receive(socket, room, Wait::none);
 }
