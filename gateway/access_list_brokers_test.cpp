@@ -28,8 +28,8 @@ using testing::OverBroker;
 using testing::Program;
 using testing::RealBroker;
 using testing::Rig;
-using testing::value_comes;
 using ::testing::UnorderedElementsAre;
+using testing::value_comes;
 
 /// A connection of a user.
 struct Person {

@@ -22,8 +22,8 @@ using ::testing::HasSubstr;
 using testing::Listener;
 using testing::OverBroker;
 using testing::Rig;
-using testing::value_comes;
 using testing::TestAuthority;
+using testing::value_comes;
 
 class BrokersTls : public OverBroker {
  protected:
