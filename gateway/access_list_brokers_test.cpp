@@ -29,6 +29,7 @@ using testing::Program;
 using testing::RealBroker;
 using testing::Rig;
 using ::testing::UnorderedElementsAre;
+using testing::value_comes;
 
 /// A connection of a user.
 struct Person {
@@ -221,7 +222,7 @@ TEST_P(BrokersAccess, BothGatewaysWorkWithIt) {
   broker->start();
   Rig rig([&] {
     const std::string user = ++made == 1 ? "robot1" : "hub";
-    return make_carrier({broker->url(), user, "secret-" + user});
+    return make_carriers({broker->url(), user, "secret-" + user});
   });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
@@ -244,6 +245,9 @@ TEST_P(BrokersAccess, BothGatewaysWorkWithIt) {
     rig.robot.bench().pipe("samples").send(1);
     return samples.try_receive().has_value();
   }));
+  auto force = bench->wire("force").connect();
+  rig.robot.bench().wire("force").set_in(2.5);
+  EXPECT_TRUE(value_comes(force, 2.5));
 }
 
 TEST_P(BrokersAccess, HoldsRetainedMessagesToTheSameRights) {

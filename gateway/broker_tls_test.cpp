@@ -23,6 +23,7 @@ using testing::Listener;
 using testing::OverBroker;
 using testing::Rig;
 using testing::TestAuthority;
+using testing::value_comes;
 
 class BrokersTls : public OverBroker {
  protected:
@@ -44,13 +45,16 @@ class BrokersTls : public OverBroker {
 
 TEST_P(BrokersTls, MembersWorkThroughBothGateways) {
   const auto broker = GetParam().start({.certificate = certificate});
-  Rig rig([&] { return make_carrier({.url = broker->url(true), .authority = ours.file()}); });
+  Rig rig([&] { return make_carriers({.url = broker->url(true), .authority = ours.file()}); });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("add", {1, 2}).as<double>(), 3);
   // More than one record of TLS, in both directions.
   const auto large = dynamic::Value::record({{"x", 1}, {"q", std::vector<double>(100'000, 0.5)}});
   bench->set("pose", large);
   EXPECT_EQ(bench->get("pose")["q"].at(99'999).as<double>(), 0.5);
+  auto force = bench->wire("force").connect();
+  rig.robot.bench().wire("force").set_in(2.5);
+  EXPECT_TRUE(value_comes(force, 2.5));
 }
 
 TEST_P(BrokersTls, AnotherAuthorityIsRefused) {

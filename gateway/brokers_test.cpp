@@ -35,7 +35,7 @@ class Brokers : public OverBroker {
     if (!IsSkipped()) broker = GetParam().start();
   }
   Rig& make_rig() {
-    return rig.emplace([this] { return make_carrier({broker->url()}); });
+    return rig.emplace([this] { return make_carriers({broker->url()}); });
   }
   /// An export file of the robot, all of whose members may be read and called.
   [[nodiscard]] std::string write_export(const Folder& folder,
@@ -230,13 +230,13 @@ TEST_P(Brokers, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
 
 /// A serving gateway, and a client of it.
 struct FarBench {
-  explicit FarBench(const RealBroker& broker) : carrier(make_carrier({broker.url()})) {
+  explicit FarBench(const RealBroker& broker) : carriers(make_carriers({broker.url()})) {
     const std::string url =
         "rr+tcp://localhost:" + std::to_string(server_node.listen_tcp(0)) + "/?service=far";
     ServerOptions options;
     options.services = {{{"hall", "robot", "bench"}, "far"}};
     options.reader = "hub";
-    server.emplace(options, server_node, *carrier, [](LogLevel, const std::string&) {});
+    server.emplace(options, server_node, carriers, [](LogLevel, const std::string&) {});
     EXPECT_TRUE(comes_true([&] {
       try {
         bench = dynamic::connect(client_node, url);
@@ -248,7 +248,7 @@ struct FarBench {
   }
 
   Node server_node;
-  std::unique_ptr<Carrier> carrier;
+  Carriers carriers;
   std::optional<Server> server;
   Node client_node;
   dynamic::Client bench;
@@ -289,8 +289,8 @@ TEST_P(Brokers, ACallSaysThatTheBrokerRefusesTheGateway) {
   int made = 0;
   Rig all(
       [&] {
-        return ++made == 1 ? make_carrier({strict->url(), "robot", "one"})
-                           : make_carrier({strict->url(), "hub", "two"});
+        return ++made == 1 ? make_carriers({strict->url(), "robot", "one"})
+                           : make_carriers({strict->url(), "hub", "two"});
       },
       milliseconds(1'000));
   const auto bench = all.connect();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -102,6 +103,15 @@ class Carrier {
   virtual void subscribe(const std::string& filter) = 0;
   /// Where it connects to, for messages to people; without credentials.
   [[nodiscard]] virtual std::string url() const = 0;
+};
+
+/// The two connections of a gateway to its broker. Each comes and goes by itself, and neither waits
+/// for the other, so that the newest values of wires do not queue behind packets and answers.
+struct Carriers {
+  std::unique_ptr<Carrier> messages;  ///< requests, answers, streams, definitions and lives
+  /// The newest values of wires; it should take few messages at a time, so that a slow link carries
+  /// new values instead of old ones. It has no life of its own.
+  std::unique_ptr<Carrier> values;
 };
 
 }  // namespace rr::gateway

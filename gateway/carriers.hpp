@@ -13,4 +13,8 @@ namespace rr::gateway {
 /// make_mqtt_carrier() and make_nats_carrier().
 std::unique_ptr<Carrier> make_carrier(const BrokerOptions& broker);
 
+/// The two carriers of a gateway. That for values has at most 16 messages and 16 KiB on their way.
+/// Throws as make_carrier().
+Carriers make_carriers(const BrokerOptions& broker);
+
 }  // namespace rr::gateway

@@ -30,6 +30,13 @@ TEST(GatewayCarriers, FollowFromTheUrl) {
   }
 }
 
+TEST(GatewayCarriers, AreTwoOfAGateway) {
+  const Carriers carriers = make_carriers({.url = "mqtt://hub"});
+  EXPECT_EQ(carriers.messages->url(), "mqtt://hub");
+  EXPECT_EQ(carriers.values->url(), "mqtt://hub");
+  EXPECT_THROW(static_cast<void>(make_carriers({.url = "http://hub"})), Error);
+}
+
 TEST(GatewayCarriers, RefuseOptionsOfAnotherBroker) {
   for (const BrokerOptions& broker :
        {BrokerOptions{.url = "mqtt://hub", .token = "secret"},

@@ -10,9 +10,12 @@
 
 #include "gateway/clock_watch.hpp"
 #include "gateway/elements.hpp"
+#include "gateway/exported_wires.hpp"
 #include "gateway/node_claim.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/service_exporter.hpp"
+#include "gateway/value_claim.hpp"
+#include "gateway/value_handler.hpp"
 #include "rr/error.hpp"
 
 namespace rr::gateway {
@@ -22,6 +25,8 @@ constexpr std::chrono::milliseconds export_tick{20};
 constexpr std::chrono::seconds stream_tick{1};
 constexpr std::chrono::seconds status_period{2};
 constexpr std::chrono::minutes left_idle{10};
+/// The farewell waits so long at most for values that are on their way.
+constexpr std::chrono::milliseconds values_end{200};
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -94,9 +99,6 @@ bool ServiceExporter::pump_retained(Carrier& carrier) {
 
 bool ServiceExporter::pump(Carrier& carrier) {
   if (!pump_retained(carrier)) return false;
-  for (const auto& [topic, wire] : wires_) {
-    if (!pump_wire(*wire, carrier)) return false;
-  }
   for (auto& [topic, stream] : streams_) {
     while (const auto message = stream.writer->next()) {
       const Published result = carrier.publish(*message);
@@ -133,13 +135,19 @@ void ServiceExporter::tick() {
 /// All of it, behind a pointer so that the handler's address stays.
 class Exporter::Core final : public CarrierHandler {
  public:
-  Core(ExportFile file, Carrier& carrier, Log log, Refused refused)
+  Core(ExportFile file, const Carriers& carriers, Log log, Refused refused)
       : file_(std::move(file)),
-        carrier_(carrier),
+        carrier_(*carriers.messages),
+        values_(*carriers.values),
         log_(std::move(log)),
         refused_(std::move(refused)),
         claim_(node_topic(file_.site, file_.node), wall_time(), host_name()),
-        worker_(std::make_unique<Worker>(export_tick, [this] { tick(); })) {
+        worker_(std::make_unique<Worker>(export_tick, [this] { tick(); })),
+        value_handler_(*worker_, values_, log_,
+                       {.message = [this](const Message& message) { take_of_values(message); },
+                        .connected = [this] { set_values_connected(true); },
+                        .disconnected = [this] { set_values_connected(false); },
+                        .room = [this] { resume_values(); }}) {
     for (ExportedServiceOptions& options : file_.services) add(options);
   }
 
@@ -151,13 +159,23 @@ class Exporter::Core final : public CarrierHandler {
     carrier_.subscribe(claim_.life_topic());
     carrier_.subscribe(claim_.claim_topic());
     carrier_.start(*this, claim_.life("lost"));
+    values_.subscribe(claim_.life_topic());
+    values_.start(value_handler_, {});
   }
 
   void stop() {
     // Of a node that is not this gateway's there is nothing to say.
     std::promise<bool> has_node;
-    worker_->post([&] { has_node.set_value(holds_node()); });
-    carrier_.stop(has_node.get_future().get() ? claim_.life("ended") : Message());
+    worker_->post([&] {
+      ends_ = true;
+      has_node.set_value(holds_node());
+    });
+    const bool has_farewell = has_node.get_future().get();
+    // Both at once where a link is down. Otherwise the farewell comes after the last value.
+    const auto values_ended = std::async(std::launch::async, [this] { values_.stop({}); });
+    if (has_farewell) values_ended.wait_for(values_end);
+    carrier_.stop(has_farewell ? claim_.life("ended") : Message());
+    values_ended.wait();
     worker_->stop();
     services_.clear();
   }
@@ -180,6 +198,7 @@ class Exporter::Core final : public CarrierHandler {
       is_connected_ = false;
       refusals_.clear();
       claim_.disconnected();
+      pump_values();
       outbox_.clear();
       if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
     });
@@ -199,7 +218,8 @@ class Exporter::Core final : public CarrierHandler {
     const std::string folder = file_.state_folder + "/" + options.name;
     services_.push_back(std::make_shared<ServiceExporter>(
         std::move(address), options, folder,
-        ServiceExporter::Shared{*worker_, outbox_, log_, [this] { pump(); }}));
+        ServiceExporter::Shared{*worker_, outbox_, wires_, log_, [this] { pump(); },
+                                [this] { pump_values(); }}));
     for (const std::string& filter : services_.back()->filters()) carrier_.subscribe(filter);
   }
 
@@ -221,6 +241,21 @@ class Exporter::Core final : public CarrierHandler {
     }
   }
 
+  void take_of_values(const Message& message) {
+    if (message.topic != claim_.life_topic()) return;
+    value_claim_.take(message);
+    pump_values();
+  }
+
+  void set_values_connected(bool is_connected) {
+    if (is_connected) {
+      value_claim_.connected();
+    } else {
+      value_claim_.disconnected();
+    }
+    resume_values();
+  }
+
   void report_refusal() {
     const std::string reason = "another gateway serves " + file_.site + "/" + file_.node + " at " +
                                carrier_.url() + ": " + claim_.holder();
@@ -238,6 +273,7 @@ class Exporter::Core final : public CarrierHandler {
     if (!had_node && holds_node()) {
       for (const auto& service : services_) service->broker_connected();
     }
+    pump_values();
     pump();
   }
 
@@ -248,6 +284,17 @@ class Exporter::Core final : public CarrierHandler {
     for (const auto& service : services_) {
       if (!service->pump(carrier_)) return;
     }
+  }
+
+  void pump_values() {
+    if (value_claim_.update()) wires_.publish_again();
+    if (!value_claim_.allows() || ends_ || !values_have_room_) return;
+    values_have_room_ = wires_.pump(values_, ExportedWires::Clock::now());
+  }
+
+  void resume_values() {
+    values_have_room_ = true;
+    pump_values();
   }
 
   /// An answer that is too large is answered with that.
@@ -271,26 +318,34 @@ class Exporter::Core final : public CarrierHandler {
       for (const auto& service : services_) service->clock_was_set(jump);
     }
     for (const auto& service : services_) service->tick();
+    if (value_claim_.wants_life(ValueClaim::Clock::now())) claim_.repeat_life();
     pump_claim();
+    resume_values();
   }
 
   ExportFile file_;
-  Carrier& carrier_;
+  Carrier& carrier_;  // for messages
+  Carrier& values_;
   Log log_;
   Refused refused_;
   NodeClaim claim_;
+  ValueClaim value_claim_{claim_};
   ClockWatch watch_{std::chrono::steady_clock::now(), wall_time()};
   Node node_;
   Outbox outbox_;
+  ExportedWires wires_;
   std::unique_ptr<Worker> worker_;
+  ValueHandler value_handler_;
   std::vector<std::shared_ptr<ServiceExporter>> services_;
   bool is_connected_ = false;
+  bool values_have_room_ = true;
+  bool ends_ = false;
   std::set<std::string> refusals_;  // topics that were reported for this connection
   std::string reason_;              // why it is not connected, as was reported
 };
 
-Exporter::Exporter(ExportFile file, Carrier& carrier, Log log, Refused refused)
-    : core_(std::make_unique<Core>(std::move(file), carrier, std::move(log), std::move(refused))) {
+Exporter::Exporter(ExportFile file, const Carriers& carriers, Log log, Refused refused)
+    : core_(std::make_unique<Core>(std::move(file), carriers, std::move(log), std::move(refused))) {
   core_->start();
 }
 

@@ -21,7 +21,7 @@ using Log = Function<void(LogLevel, const std::string&)>;
 
 /// The gateway beside a robot: offers its services on a broker, as the export file says.
 ///
-///   rr::gateway::Exporter exporter(read_export_file("robot1.toml"), carrier, log);
+///   rr::gateway::Exporter exporter(read_export_file("robot1.toml"), carriers, log);
 ///
 /// It lives until it is destroyed, whatever becomes of the broker and the robot.
 class Exporter {
@@ -30,9 +30,9 @@ class Exporter {
   /// nothing any more, and should be destroyed, on another thread.
   using Refused = Function<void(const std::string& reason)>;
 
-  /// Starts the carrier, which must outlive it. Throws rr::Error for the state folder
+  /// Starts both carriers, which must outlive it. Throws rr::Error for the state folder
   /// (gateway/stream_log.hpp) and for URLs of services.
-  Exporter(ExportFile file, Carrier& carrier, Log log, Refused refused = {});
+  Exporter(ExportFile file, const Carriers& carriers, Log log, Refused refused = {});
   /// Says farewell to the broker.
   ~Exporter();
   Exporter(const Exporter&) = delete;

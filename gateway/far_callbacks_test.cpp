@@ -55,7 +55,7 @@ class FarCallbacks : public ::testing::Test {
   }
 
   MemoryBroker broker{31};
-  Rig rig{[this] { return broker.carrier(); }, callback_patience, with_callback, "open sesame",
+  Rig rig{[this] { return broker.carriers(); }, callback_patience, with_callback, "open sesame",
           definition_with_callback()};
   dynamic::Client one = rig.connect();
   dynamic::Client two = rig.connect();

@@ -57,7 +57,7 @@ class FarLocksTest : public ::testing::Test {
   }
 
   MemoryBroker broker{23};
-  Rig rig{[this] { return broker.carrier(); }, lock_patience, with_locks};
+  Rig rig{[this] { return broker.carriers(); }, lock_patience, with_locks};
   Node node;
   dynamic::Client near = dynamic::connect(node, rig.robot.url(), Rig::login());
   dynamic::Client one = rig.connect();
@@ -222,7 +222,7 @@ TEST_F(FarLocksTest, OnlyThoseThatLockHaveASession) {
 
 TEST(FarLockRights, AreThoseOfTheExportFile) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, lock_patience,
+  Rig rig([&] { return broker.carriers(); }, lock_patience,
           "[[service.user]]\nbroker = \"hub\"\nservice = \"operator\"\npassword_file = "
           "\"secret\"\n");
   const auto far = rig.connect();
@@ -235,7 +235,7 @@ TEST(FarLockRights, AreThoseOfTheExportFile) {
 
 TEST(FarLockRights, AreThoseOfTheUserAtTheRobot) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, lock_patience,
+  Rig rig([&] { return broker.carriers(); }, lock_patience,
           "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"lock\"]\n");
   const auto far = rig.connect();
   // The user `gateway` has no privilege to lock.

@@ -240,17 +240,17 @@ void FarService::serve_wire(const dynamic::ServedObject& object, const std::stri
   if ((member.access & writeonly) != 0) return;
   const std::string topic = member_topic(address_, path, member.name);
   wires_[topic] = {object, member};
-  shared_.carrier.subscribe(topic);
+  shared_.values.subscribe(topic);
 }
 
-void FarService::take_wire(FarWire& wire, const Message& message) {
+void FarService::take_value(const Message& message) {
+  const auto found = wires_.find(message.topic);
+  if (found == wires_.end()) return;
+  FarWire& wire = found->second;
   const auto epoch = number_property(message, "stream", 16);
   const auto number = number_property(message, "number");
   if (!epoch || !number) return;
-  // Another epoch: the robot's gateway was started again, and counts anew.
-  if (*epoch == wire.epoch && *number <= wire.number) return;
-  wire.epoch = *epoch;
-  wire.number = *number;
+  if (!wire.order.take(*epoch, *number, ValueOrder::Clock::now())) return;
   try {
     wire.object.wire(wire.member.name)
         .set_in(decode_element(*definitions_, wire.member.type, message.payload));

@@ -37,7 +37,7 @@ Error error_of_call(Call call) {
 class FarGenerators : public ::testing::Test {
  protected:
   MemoryBroker broker{11};
-  Rig rig{[this] { return broker.carrier(); }};
+  Rig rig{[this] { return broker.carriers(); }};
   dynamic::Client bench = rig.connect();
 };
 using FarMemories = FarGenerators;
@@ -215,7 +215,7 @@ TEST_F(FarPipes, GoBothWays) {
 
 TEST_F(FarPipes, AnEndpointIsClosedWhenPacketsAreLost) {
   MemoryBroker other_broker;
-  Rig other([&] { return other_broker.carrier(); }, milliseconds(600));
+  Rig other([&] { return other_broker.carriers(); }, milliseconds(600));
   const auto far = other.connect();
   auto commands = far->pipe("commands").connect();
   commands.send("one");

@@ -59,10 +59,6 @@ bool FarService::take(const Message& message) {
     stream->second->receive(message, shared_.outbox);
     return true;
   }
-  if (const auto wire = wires_.find(message.topic); wire != wires_.end()) {
-    take_wire(wire->second, message);
-    return true;
-  }
   if (message.topic == shared_.reader.reply_topic) return take_reply(message);
   if (message.topic == topic_ + "/$life") {
     take_life(message);

@@ -15,6 +15,7 @@
 #include "gateway/far_packets.hpp"
 #include "gateway/far_sessions.hpp"
 #include "gateway/far_stream.hpp"
+#include "gateway/value_order.hpp"
 #include "rr/dynamic_service.hpp"
 
 namespace rr::gateway {
@@ -27,7 +28,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
     Node& node;
     Worker& worker;
     Outbox& outbox;
-    Carrier& carrier;
+    Carrier& carrier;  ///< for messages
+    Carrier& values;
     std::shared_ptr<FarCalls> calls;
     FarStream::Reader reader;
     Log log;
@@ -46,6 +48,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
   void close();
   /// A message that is no answer to a request. False when it is none of this service.
   bool take(const Message& message);
+  /// A message of the connection for values.
+  void take_value(const Message& message);
   /// The connection to the broker was made.
   void reconnected();
   /// To be called often.
@@ -61,8 +65,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
   struct FarWire {
     dynamic::ServedObject object;
     dynamic::MemberDescription member;
-    std::uint64_t epoch = 0;
-    std::uint64_t number = 0;
+    ValueOrder order{};
   };
 
   bool take_reply(const Message& message);
@@ -100,7 +103,6 @@ class FarService : public std::enable_shared_from_this<FarService> {
   void call_back(const Message& message, std::uint32_t client, const FarCalls::Done& done);
   void add_stream(const std::string& path, const std::string& member, StreamReader::Sink sink,
                   Function<bool()> has_room);
-  void take_wire(FarWire& wire, const Message& message);
   void report_gap(const std::string& member, const StreamGap& gap);
 
   const ServiceAddress address_;

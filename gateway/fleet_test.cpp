@@ -69,7 +69,7 @@ TEST(GatewayFleet, WhatIsMalformedIsIgnored) {
 
 TEST(GatewayFleet, IsAskedForAtTheBroker) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
+  Rig rig([&] { return broker.carriers(); });
   const auto bench = rig.connect();
   auto samples = bench->pipe("samples").connect();
   ASSERT_TRUE(comes_true([&] {

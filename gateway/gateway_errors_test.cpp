@@ -48,15 +48,15 @@ Error failure_of(Call call) {
 
 TEST(GatewayErrors, ASecondGatewayOfARobotIsRefused) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
+  Rig rig([&] { return broker.carriers(); });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
   const Folder state;
-  const auto carrier = broker.carrier();
+  const Carriers carriers = broker.carriers();
   Kept<std::string> log;
   Kept<std::string> refused;
   {
-    const Exporter second(rig.export_file(state.path()), *carrier, into(log),
+    const Exporter second(rig.export_file(state.path()), carriers, into(log),
                           [&](const std::string& reason) { refused.add(reason); });
     ASSERT_TRUE(refused.wait_for(1));
     EXPECT_THAT(refused.items()[0], HasSubstr("another gateway serves hall/robot at memory: "));
@@ -73,18 +73,18 @@ TEST(GatewayErrors, ASecondGatewayOfARobotIsRefused) {
 
 TEST(GatewayErrors, ASecondGatewayWithTheSameStateDoesNotStart) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
-  const auto carrier = broker.carrier();
+  Rig rig([&] { return broker.carriers(); });
+  const Carriers carriers = broker.carriers();
   Kept<std::string> log;
   const Error error = failure_of(
-      [&] { return Exporter(rig.export_file(rig.state_folder()), *carrier, into(log)), 0; });
+      [&] { return Exporter(rig.export_file(rig.state_folder()), carriers, into(log)), 0; });
   EXPECT_EQ(error.code(), ErrorCode::invalid_state);
   EXPECT_THAT(error.message(), HasSubstr("is in use by another gateway"));
 }
 
 TEST(GatewayErrors, AGatewayTakesTheNodeOfOneThatHasGone) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
+  Rig rig([&] { return broker.carriers(); });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
   rig.stop_export();
@@ -105,7 +105,7 @@ TEST(GatewayErrors, AGatewayTakesTheNodeOfOneThatHasGone) {
 // The rules of this rig have no access `lock`.
 TEST(GatewayErrors, LocksThatAreNotExportedAreRefusedAndThoseOfNearClientsHold) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
+  Rig rig([&] { return broker.carriers(); });
   const auto bench = rig.connect();
   const Error refused = failure_of([&] { return lock(bench->stub()), 0; });
   EXPECT_EQ(refused.code(), ErrorCode::permission_denied);
@@ -143,21 +143,21 @@ TEST(GatewayErrors, AChangedDefinitionEndsTheServiceUntilTheServingGatewayIsStar
   all.members = {"*"};
   all.access = reading | writing | calling;
   file.services[0].rules.push_back(all);
-  const auto export_carrier = broker.carrier();
-  const Exporter exporter(file, *export_carrier, into(export_log));
+  const Carriers export_carriers = broker.carriers();
+  const Exporter exporter(file, export_carriers, into(export_log));
 
   ServerOptions options;
   options.services = {{{"hall", "robot", "bench"}, "bench"}};
   options.reader = "hub";
-  std::unique_ptr<Carrier> carrier;
+  Carriers carriers;
   std::unique_ptr<Node> node;
   std::optional<Server> server;
   Node client_node;
   const auto start_server = [&] {
     node = std::make_unique<Node>();
     const auto to = "rr+tcp://localhost:" + std::to_string(node->listen_tcp(0)) + "/?service=bench";
-    carrier = broker.carrier();
-    server.emplace(options, *node, *carrier, into(serve_log));
+    carriers = broker.carriers();
+    server.emplace(options, *node, carriers, into(serve_log));
     dynamic::Client client;
     EXPECT_TRUE(comes_true([&] {
       return failure_of([&] { return client = dynamic::connect(client_node, to), 0; }).code() ==

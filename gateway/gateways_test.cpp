@@ -37,7 +37,7 @@ ErrorCode code_of(Call call, std::string* text = nullptr) {
 class Gateways : public ::testing::Test {
  protected:
   MemoryBroker broker{7};
-  Rig rig{[this] { return broker.carrier(); }};
+  Rig rig{[this] { return broker.carriers(); }};
 };
 
 TEST_F(Gateways, PropertiesAreGotAndSet) {
@@ -218,7 +218,7 @@ TEST_F(Gateways, AWireHasItsNewestValueAfterTheBrokerHasDroppedIt) {
 
 TEST(GatewayWires, AreHeldToTheirRate) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000),
+  Rig rig([&] { return broker.carriers(); }, milliseconds(20'000),
           "[[service.allow]]\nmembers = [\"force\"]\naccess = [\"read\"]\nrate = \"5/s\"\n"
           "lifespan = \"7 s\"\n");
   const auto bench = rig.connect();
@@ -412,26 +412,26 @@ constexpr const char* hub_is_operator =
 
 TEST(GatewayUsers, AreThoseOfTheService) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "open sesame");
+  Rig rig([&] { return broker.carriers(); }, milliseconds(20'000), hub_is_operator, "open sesame");
   EXPECT_EQ(rig.connect()->call("whoami").text(), "operator");
 }
 
 TEST(GatewayUsers, WithoutAnEntryTheyAreTheGateway) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); });
+  Rig rig([&] { return broker.carriers(); });
   EXPECT_EQ(rig.connect()->call("whoami").text(), "gateway");
 }
 
 TEST(GatewayUsers, AWrongPasswordIsReported) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "wrong");
+  Rig rig([&] { return broker.carriers(); }, milliseconds(20'000), hub_is_operator, "wrong");
   const auto bench = rig.connect();
   EXPECT_EQ(code_of([&] { return bench->call("whoami"); }), ErrorCode::authentication_error);
 }
 
 TEST(GatewayTrouble, ACallThatWasGivenUpIsNotExecutedLater) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, milliseconds(600));
+  Rig rig([&] { return broker.carriers(); }, milliseconds(600));
   const auto bench = rig.connect();
   broker.crash();
   EXPECT_EQ(code_of([&] { return bench->call("count"); }), ErrorCode::connection_error);
@@ -454,8 +454,8 @@ TEST(GatewayTrouble, ARobotThatIsNotThereIsReportedOnce) {
   arm.name = "arm";
   arm.url = "rr+tcp://localhost:1/?service=arm";
   file.services.push_back(arm);
-  const auto carrier = broker.carrier();
-  const Exporter exporter(file, *carrier,
+  const Carriers carriers = broker.carriers();
+  const Exporter exporter(file, carriers,
                           [&](LogLevel, const std::string& text) { log.add(text); });
   const auto reports = [&] {
     const auto lines = log.items();
@@ -472,7 +472,7 @@ TEST(GatewayTrouble, ARobotThatIsNotThereIsReportedOnce) {
 
 TEST(GatewayTrouble, ErrorsSayWhereItFailed) {
   MemoryBroker broker;
-  Rig rig([&] { return broker.carrier(); }, milliseconds(600));
+  Rig rig([&] { return broker.carriers(); }, milliseconds(600));
   const auto bench = rig.connect();
   std::string text;
   rig.stop_export();

@@ -34,9 +34,9 @@ void wait_for(const robdef::EndSignals& signals) {
 
 void run_export(const std::string& path, const robdef::EndSignals& signals) {
   ExportFile file = read_export_file(path);
-  const auto carrier = make_carrier(file.broker);
+  const Carriers carriers = make_carriers(file.broker);
   std::atomic<bool> is_refused{false};
-  const Exporter exporter(std::move(file), *carrier, log,
+  const Exporter exporter(std::move(file), carriers, log,
                           [&](const std::string&) { is_refused = true; });
   while (!is_refused) {
     if (signals.wait()) return;
@@ -66,8 +66,8 @@ void print_fleet(const ProgramOptions& options) {
 void run_serve(const ProgramOptions& options, SetupOptions setup,
                const robdef::EndSignals& signals) {
   const NodeSetup node(std::move(setup));
-  const auto carrier = make_carrier(options.broker);
-  const Server server(options.server, node.node(), *carrier, log);
+  const Carriers carriers = make_carriers(options.broker);
+  const Server server(options.server, node.node(), carriers, log);
   wait_for(signals);
 }
 

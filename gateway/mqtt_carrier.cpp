@@ -66,6 +66,8 @@ class MqttCarrier final : public Carrier {
       const MutexLock lock(mutex_);
       farewell_ = farewell;
       ends_ = true;
+      // Ends the library's wait for the broker. Before a farewell the connection is still needed.
+      if (farewell.topic.empty() && is_connected_ && client_) mosquitto_disconnect(client_.get());
     }
     changed_.notify_all();
     if (thread_.joinable()) thread_.join();
@@ -74,10 +76,10 @@ class MqttCarrier final : public Carrier {
   Published publish(const Message& message) override {
     const MutexLock lock(mutex_);
     if (!is_connected_ || ends_) return Published::later;
-    if (waiting_ >= limits_.in_flight) {
+    if (is_full(size_of(message))) {
       wants_room_ = true;
       // It may have been acknowledged since.
-      if (waiting_ >= limits_.in_flight) return Published::later;
+      if (is_full(size_of(message))) return Published::later;
     }
     return send(message);
   }
@@ -95,23 +97,40 @@ class MqttCarrier final : public Carrier {
   [[nodiscard]] std::string url() const override { return broker_.url; }
 
  private:
+  /// A message that the broker has not acknowledged.
+  struct Flight {
+    std::string topic;
+    std::size_t size = 0;
+  };
+
+  static std::size_t size_of(const Message& message) {
+    return message.topic.size() + message.payload.size();
+  }
+  [[nodiscard]] bool is_full(std::size_t size) const {
+    const std::size_t count = waiting_;
+    return count >= limits_.in_flight || (count > 0 && bytes_ + size > limits_.in_flight_bytes);
+  }
+
   Published send(const Message& message) {
+    const std::size_t size = size_of(message);
     const MqttProperties properties(message);
     // Before it is acknowledged, which the other thread may see at once.
     ++waiting_;
+    bytes_ += size;
     int id = 0;
     int result = 0;
     {
       // The acknowledgement waits until the topic is known. The library calls back with no lock
       // that publishing takes.
-      const MutexLock lock(topics_mutex_);
+      const MutexLock lock(flight_mutex_);
       result = mosquitto_publish_v5(
           client_.get(), &id, message.topic.c_str(), static_cast<int>(message.payload.size()),
           message.payload.data(), qos, message.retained, properties.get());
-      if (result == MOSQ_ERR_SUCCESS) topics_[id] = message.topic;
+      if (result == MOSQ_ERR_SUCCESS) flight_[id] = {message.topic, size};
     }
     if (result == MOSQ_ERR_SUCCESS) return Published::taken;
     --waiting_;
+    bytes_ -= size;
     const bool is_large = result == MOSQ_ERR_PAYLOAD_SIZE || result == MOSQ_ERR_OVERSIZE_PACKET;
     return is_large ? Published::refused : Published::later;
   }
@@ -128,8 +147,9 @@ class MqttCarrier final : public Carrier {
         is_accepted_ = false;
         client_.reset();
         waiting_ = 0;
-        const MutexLock topics_lock(topics_mutex_);
-        topics_.clear();
+        bytes_ = 0;
+        const MutexLock flight_lock(flight_mutex_);
+        flight_.clear();
       }
       if (ends_) return;
       handler_->on_disconnected(broker_.url + ": " + reason_);
@@ -296,19 +316,20 @@ class MqttCarrier final : public Carrier {
     if (self.subscribing_ > 0 && --self.subscribing_ == 0) self.become_connected();
   }
 
-  /// Where a message that is acknowledged went.
-  std::string take_topic(int id) {
-    const MutexLock lock(topics_mutex_);
-    const auto node = topics_.extract(id);
-    return node.empty() ? std::string() : node.mapped();
+  /// The message that is acknowledged.
+  Flight take_flight(int id) {
+    const MutexLock lock(flight_mutex_);
+    const auto node = flight_.extract(id);
+    return node.empty() ? Flight() : node.mapped();
   }
 
   static void on_publish(mosquitto*, void* user, int id, int code, const mosquitto_property*) {
     auto& self = *static_cast<MqttCarrier*>(user);
-    const std::string topic = self.take_topic(id);
+    const Flight flight = self.take_flight(id);
     if (code >= refused_from) {
-      self.handler_->on_refused({topic, mosquitto_reason_string(code)});
+      self.handler_->on_refused({flight.topic, mosquitto_reason_string(code)});
     }
+    self.bytes_ -= flight.size;
     const std::size_t left = --self.waiting_;
     if (left <= self.limits_.in_flight / 2 && self.wants_room_.exchange(false)) {
       self.handler_->on_room();
@@ -351,9 +372,10 @@ class MqttCarrier final : public Carrier {
   std::atomic<bool> is_connected_{false};  // and it knows the subscriptions
   std::atomic<bool> wants_room_{false};
   std::atomic<std::size_t> waiting_{0};  // messages that are not acknowledged
-  Mutex topics_mutex_;
-  // Of messages that are not acknowledged, by their ids.
-  std::map<int, std::string> topics_ RR_GUARDED_BY(topics_mutex_);
+  std::atomic<std::size_t> bytes_{0};    // of these
+  Mutex flight_mutex_;
+  // Messages that are not acknowledged, by their ids.
+  std::map<int, Flight> flight_ RR_GUARDED_BY(flight_mutex_);
   Mutex filters_mutex_;
   std::vector<std::string> filters_ RR_GUARDED_BY(filters_mutex_);
   // Of the carrier's thread.

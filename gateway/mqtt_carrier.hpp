@@ -13,6 +13,8 @@ namespace rr::gateway {
 /// How a broker of MQTT 5 is used.
 struct MqttLimits {
   std::size_t in_flight = 64;  ///< messages that the broker has not acknowledged, at most
+  /// Bytes of their topics and payloads, at most; one message may be larger.
+  std::size_t in_flight_bytes = std::size_t{16} * 1024 * 1024;
   int receive = 1'000;  ///< messages of the broker that this side has not acknowledged, at most
   /// To the next attempt to connect, at first; it doubles up to `max_retry`.
   std::chrono::milliseconds retry{100};

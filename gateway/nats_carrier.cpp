@@ -32,9 +32,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds nats_loop_time{100};
 constexpr std::chrono::seconds nats_farewell_time{2};
-constexpr std::chrono::seconds make_again{1};                             // the stream
-constexpr std::size_t most_flight_bytes = std::size_t{16} * 1024 * 1024;  // of messages in flight
-constexpr std::size_t most_held = 10'000;  // messages that come before all is known
+constexpr std::chrono::seconds make_again{1};  // the stream
+constexpr std::size_t most_held = 10'000;      // messages that come before all is known
 constexpr std::string_view state_header = "rr-state";
 constexpr std::string_view instance_header = "rr-instance";
 constexpr std::string_view number_header = "Nats-Sequence";
@@ -128,7 +127,8 @@ class NatsCarrier final : public Carrier {
     const MutexLock lock(mutex_);
     if (!is_connected_ || ends_) return Published::later;
     if (size > largest_) return Published::refused;
-    if (waiting_ >= limits_.in_flight || (waiting_ > 0 && bytes_ + size > most_flight_bytes)) {
+    if (waiting_ >= limits_.in_flight ||
+        (waiting_ > 0 && bytes_ + size > limits_.in_flight_bytes)) {
       wants_room_ = true;
       return Published::later;
     }

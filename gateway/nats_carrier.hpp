@@ -13,6 +13,8 @@ namespace rr::gateway {
 /// How a server of NATS is used.
 struct NatsLimits {
   std::size_t in_flight = 256;  ///< messages that the server has not read, at most
+  /// Bytes of these, at most; one message may be larger.
+  std::size_t in_flight_bytes = std::size_t{16} * 1024 * 1024;
   /// To the next attempt to connect, at first; it doubles up to `max_retry`.
   std::chrono::milliseconds retry{100};
   std::chrono::milliseconds max_retry{3'000};

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "gateway/carriers.hpp"
 #include "gateway/nats_carrier.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/testing/listener.hpp"
@@ -58,8 +59,7 @@ class NatsCluster : public ::testing::Test {
 // Each of them in turn, so the leader of the stream is among them.
 TEST_F(NatsCluster, NothingIsLostWhenServersAreKilled) {
   std::size_t made = 0;
-  Rig rig([&] { return make_nats_carrier({.url = url(made++), .replicas = 3}); },
-          milliseconds(60'000));
+  Rig rig([&] { return make_carriers({.url = url(made++), .replicas = 3}); }, milliseconds(60'000));
   const auto bench = rig.connect();
   auto samples = bench->pipe("samples").connect();
   Kept<std::uint32_t> got;

@@ -46,10 +46,6 @@ void NodeClaim::disconnected() {
   other_.reset();
 }
 
-bool NodeClaim::is_mine(const Message& message) const {
-  return message.find("instance") == instance_;
-}
-
 bool NodeClaim::is_before_me(const Message& message) const {
   const auto started = number_property(message, "started").value_or(0);
   const auto mine = static_cast<std::uint64_t>(started_);

@@ -49,6 +49,12 @@ class NodeClaim {
   /// What is to be published now, before anything else; nothing for nothing. To be called after
   /// take() and connected(), and some times in a second.
   std::optional<Message> next(Clock::time_point now);
+  /// While the node is this gateway's: next() gives its life once more.
+  void repeat_life() { must_say_life_ = state_ == State::holding; }
+  /// Whether a claim or a life is this gateway's.
+  [[nodiscard]] bool is_mine(const Message& message) const {
+    return message.find("instance") == instance_;
+  }
   [[nodiscard]] State state() const { return state_; }
   /// The gateway that has the node, for people: `hall-pc, since 2026-11-27T11:44:16Z`.
   [[nodiscard]] const std::string& holder() const { return holder_; }
@@ -56,7 +62,6 @@ class NodeClaim {
  private:
   void take_life(const Message& message);
   void refuse(const Message& life);
-  [[nodiscard]] bool is_mine(const Message& message) const;
   [[nodiscard]] bool is_before_me(const Message& message) const;
 
   const std::string topic_;

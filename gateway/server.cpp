@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gateway/far_service.hpp"
+#include "gateway/value_handler.hpp"
 #include "rr/error.hpp"
 
 namespace rr::gateway {
@@ -24,10 +25,17 @@ void check_level(const std::string& name) {
 
 class Server::Core final : public CarrierHandler {
  public:
-  Core(ServerOptions options, Node& node, Carrier& carrier, Log log)
-      : carrier_(carrier),
+  Core(ServerOptions options, Node& node, const Carriers& carriers, Log log)
+      : carrier_(*carriers.messages),
+        values_(*carriers.values),
         log_(std::move(log)),
-        worker_(std::make_shared<Worker>(server_tick, [this] { tick(); })) {
+        worker_(std::make_shared<Worker>(server_tick, [this] { tick(); })),
+        // The broker has the newest values for each new connection.
+        value_handler_(*worker_, values_, log_,
+                       {.message = [this](const Message& message) { take_value(message); },
+                        .connected = [] {},
+                        .disconnected = [] {},
+                        .room = [] {}}) {
     if (options.user.empty()) options.user = options.reader;
     check_level(options.reader);
     check_level(options.user);
@@ -41,7 +49,7 @@ class Server::Core final : public CarrierHandler {
       check_level(service.address.service);
       services_.push_back(std::make_shared<FarService>(
           service.address, service.name,
-          FarService::Shared{node, *worker_, outbox_, carrier_, calls_, reader, log_,
+          FarService::Shared{node, *worker_, outbox_, carrier_, values_, calls_, reader, log_,
                              [this] { pump(); }, options.session_alive}));
     }
     life_.topic = calls_->reply_topic();
@@ -52,11 +60,14 @@ class Server::Core final : public CarrierHandler {
     for (const auto& service : services_) service->start();
     worker_->start();
     carrier_.start(*this, life_);
+    values_.start(value_handler_, {});
   }
 
   void stop() {
     end_sessions();
+    const auto values_ended = std::async(std::launch::async, [this] { values_.stop({}); });
     carrier_.stop({});
+    values_ended.wait();
     worker_->stop();
     calls_->abort();
     for (const auto& service : services_) service->close();
@@ -118,6 +129,10 @@ class Server::Core final : public CarrierHandler {
     pump();
   }
 
+  void take_value(const Message& message) {
+    for (const auto& service : services_) service->take_value(message);
+  }
+
   void pump() {
     if (!is_connected_) return;
     outbox_.pump(carrier_, [this](const Message& message) { calls_->refuse(message); });
@@ -139,10 +154,12 @@ class Server::Core final : public CarrierHandler {
     pump();
   }
 
-  Carrier& carrier_;
+  Carrier& carrier_;  // for messages
+  Carrier& values_;
   Log log_;
   Outbox outbox_;
   const std::shared_ptr<Worker> worker_;
+  ValueHandler value_handler_;
   std::shared_ptr<FarCalls> calls_;
   std::vector<std::shared_ptr<FarService>> services_;
   Message life_;
@@ -151,8 +168,8 @@ class Server::Core final : public CarrierHandler {
   std::string reason_ = "not connected yet";
 };
 
-Server::Server(ServerOptions options, Node& node, Carrier& carrier, Log log)
-    : core_(std::make_unique<Core>(std::move(options), node, carrier, std::move(log))) {
+Server::Server(ServerOptions options, Node& node, const Carriers& carriers, Log log)
+    : core_(std::make_unique<Core>(std::move(options), node, carriers, std::move(log))) {
   core_->start();
 }
 

@@ -32,9 +32,9 @@ struct ServerOptions {
 /// services of a node. They appear as soon as the broker has their definitions.
 class Server {
  public:
-  /// Starts the carrier. Node and carrier must outlive it; handlers of the node wait for robots, so
-  /// it needs threads. Throws rr::Error (invalid_argument) for names.
-  Server(ServerOptions options, Node& node, Carrier& carrier, Log log);
+  /// Starts both carriers. Node and carriers must outlive it; handlers of the node wait for robots,
+  /// so it needs threads. Throws rr::Error (invalid_argument) for names.
+  Server(ServerOptions options, Node& node, const Carriers& carriers, Log log);
   /// Closes the services.
   ~Server();
   Server(const Server&) = delete;

@@ -14,6 +14,7 @@
 #include "gateway/exported_endpoints.hpp"
 #include "gateway/exported_generators.hpp"
 #include "gateway/exported_sessions.hpp"
+#include "gateway/exported_wires.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/outbox.hpp"
 #include "gateway/properties.hpp"
@@ -21,7 +22,6 @@
 #include "gateway/stream_writer.hpp"
 #include "gateway/topics.hpp"
 #include "gateway/worker.hpp"
-#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -33,8 +33,10 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   struct Shared {
     Worker& worker;
     Outbox& outbox;
+    ExportedWires& wires;
     Log log;
-    Function<void()> pump;  ///< something can be published; on the worker's thread
+    Function<void()> pump;         ///< something can be published; on the worker's thread
+    Function<void()> pump_values;  ///< the same of `wires`
   };
 
   /// Throws as CallWindow.
@@ -52,7 +54,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   bool take(const Message& message);
   /// The broker is there, perhaps without what was retained: all of it is published anew.
   void broker_connected();
-  /// Streams and wires have their turn. False when the carrier takes no more for now.
+  /// What is retained and streams have their turn. False when the carrier takes no more for now.
   bool pump(Carrier& carrier);
   /// To be called often.
   void tick();
@@ -60,22 +62,6 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void clock_was_set(std::int64_t by);
 
  private:
-  /// The newest value of a wire. Filled on threads of the node.
-  struct WireExport {
-    std::string topic;
-    dynamic::ValueType type;
-    std::chrono::nanoseconds period{0};
-    std::optional<std::chrono::seconds> lifespan;
-    Mutex mutex;
-    std::optional<Timed<dynamic::Value>> newest RR_GUARDED_BY(mutex);
-    bool is_announced RR_GUARDED_BY(mutex) = false;
-    std::uint64_t number = 0;
-    std::optional<Message> message;  // that is to be published
-    std::chrono::steady_clock::time_point due{};
-    Message last;
-    std::chrono::steady_clock::time_point published{};  // when `last` was, for the first time
-    std::chrono::steady_clock::time_point again{};      // when it is published once more
-  };
   struct StreamExport {
     std::unique_ptr<StreamWriter> writer;
     std::chrono::steady_clock::time_point ticked{};
@@ -104,11 +90,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
                    const dynamic::MemberDescription& member, const Attaching& attaching);
   void attach_event(const std::string& path, const dynamic::Object& object,
                     const dynamic::MemberDescription& member);
-  void take_value(const std::shared_ptr<WireExport>& wire, const dynamic::Value& value,
-                  const TimeSpec& time);
+  void take_value(ExportedWires::Wire& wire, const dynamic::Value& value, const TimeSpec& time);
   bool pump_retained(Carrier& carrier);
-  bool pump_wire(WireExport& wire, Carrier& carrier);
-  static void repeat_value(WireExport& wire, std::chrono::steady_clock::time_point now);
   StreamExport* stream(const std::string& path, const std::string& member, bool makes);
   StreamExport* begin_stream(const std::string& path, const std::string& member);
   void take_record(StreamExport* stream,
@@ -157,14 +140,12 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   ExportedServiceOptions options_;
   std::string folder_;
   Shared shared_;
-  const std::string epoch_ = random_hex();  // of numbers of wires
   Node* node_ = nullptr;
   CallWindow window_;
   std::shared_ptr<RobotSession> session_;
   std::map<std::string, std::shared_ptr<RobotSession>> user_sessions_;  // by user of the broker
   std::map<std::string, Message> retained_;                             // by topic
   std::set<std::string> unpublished_;                                   // topics of retained_
-  std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
   std::chrono::steady_clock::time_point status_told_{};
   std::shared_ptr<ExportedCallbacks> callbacks_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a service sends by itself: definitions, life, wires, pipes and events.
-#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -15,10 +14,6 @@ namespace rr::gateway {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// The last value of a wire is published again after 1, 2, 4 ... 64, 128, 192 ... seconds.
-constexpr std::chrono::seconds first_repeat{1};
-constexpr std::chrono::seconds last_repeat{64};
 
 /// As a folder is called: no separators of folders are in a path.
 std::string folder_name(const std::string& path, const std::string& member) {
@@ -113,9 +108,6 @@ void ServiceExporter::retain(Message message) {
 
 void ServiceExporter::broker_connected() {
   for (const auto& [topic, message] : retained_) unpublished_.insert(topic);
-  for (const auto& [topic, wire] : wires_) {
-    if (!wire->message && !wire->last.topic.empty()) wire->message = wire->last;
-  }
   for (auto& [topic, stream] : streams_) stream.writer->announce();
 }
 
@@ -152,81 +144,26 @@ void ServiceExporter::attach_members(const std::string& path, const dynamic::Obj
 void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object& object,
                                   const dynamic::MemberDescription& member, const ExportRule& rule,
                                   const Attaching& attaching) {
-  const std::string topic = member_topic(address_, path, member.name);
-  auto& wire = wires_[topic];
-  if (!wire) wire = std::make_shared<WireExport>();
-  wire->topic = topic;
-  wire->type = member.type;
-  wire->period = rule.period;
-  wire->lifespan = rule.lifespan;
+  const auto wire = shared_.wires.add(
+      {member_topic(address_, path, member.name), member.type, rule.period, rule.lifespan});
   object.wire(member.name)
       .async_connect([weak = Weak(shared_from_this()), wire, attaching](
                          const std::exception_ptr& error, dynamic::WireConnection end) {
         if (error) return;
         end.on_in([weak, wire](const dynamic::Value& value, const TimeSpec& time) {
-             if (const Self self = weak.lock()) self->take_value(wire, value, time);
+             if (const Self self = weak.lock()) self->take_value(*wire, value, time);
            })
             .detach();
       });
 }
 
 // Of values that come faster than they are published only the newest counts.
-void ServiceExporter::take_value(const std::shared_ptr<WireExport>& wire,
-                                 const dynamic::Value& value, const TimeSpec& time) {
-  {
-    const MutexLock lock(wire->mutex);
-    wire->newest = Timed<dynamic::Value>{value, time};
-    if (std::exchange(wire->is_announced, true)) return;
-  }
+void ServiceExporter::take_value(ExportedWires::Wire& wire, const dynamic::Value& value,
+                                 const TimeSpec& time) {
+  if (!ExportedWires::put(wire, value, time)) return;
   shared_.worker.post([weak = Weak(shared_from_this())] {
-    if (const Self self = weak.lock()) self->shared_.pump();
+    if (const Self self = weak.lock()) self->shared_.pump_values();
   });
-}
-
-bool ServiceExporter::pump_wire(WireExport& wire, Carrier& carrier) {
-  const auto now = Clock::now();
-  if (now < wire.due) return true;
-  std::optional<Timed<dynamic::Value>> newest;
-  {
-    const MutexLock lock(wire.mutex);
-    newest = std::exchange(wire.newest, std::nullopt);
-    wire.is_announced = false;
-  }
-  if (newest) {
-    const auto time = newest->time.seconds * 1'000'000'000 + newest->time.nanoseconds;
-    Message message{wire.topic, encode_element(wire.type, newest->value)};
-    message.properties = {{"type", wire.type.text()},
-                          {"time", std::to_string(time)},
-                          {"stream", epoch_},
-                          {"number", std::to_string(++wire.number)}};
-    message.retained = true;
-    message.expiry = wire.lifespan;
-    wire.message = std::move(message);
-  }
-  if (!wire.message) repeat_value(wire, now);
-  if (!wire.message) return true;
-  if (carrier.publish(*wire.message) == Published::later) return false;
-  const bool is_new = wire.last.find("number") != wire.message->find("number");
-  if (is_new) wire.published = now;
-  wire.last = *std::exchange(wire.message, std::nullopt);
-  wire.due = now + wire.period;
-  // As long after the last time as that was after the first.
-  wire.again = now + std::clamp<Clock::duration>(now - wire.published, first_repeat, last_repeat);
-  return true;
-}
-
-// A broker drops what a slow reader does not take in time, and says so to nobody. While values
-// follow, the next one makes up for it; the last one has to be sent once more.
-void ServiceExporter::repeat_value(WireExport& wire, Clock::time_point now) {
-  if (wire.last.topic.empty() || now < wire.again) return;
-  Message message = wire.last;
-  if (wire.lifespan) {
-    // It does not live longer by that.
-    const auto left = *wire.lifespan - (now - wire.published);
-    if (left < std::chrono::seconds(1)) return;
-    message.expiry = std::chrono::floor<std::chrono::seconds>(left);
-  }
-  wire.message = std::move(message);
 }
 
 void ServiceExporter::attach_pipe(const std::string& path, const dynamic::Object& object,

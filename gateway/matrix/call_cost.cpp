@@ -69,7 +69,7 @@ void run(int rounds, int calls) {
   broker.start();
   BrokerOptions options;
   options.url = broker.url(false);
-  testing::Rig rig([&] { return make_carrier(options); });
+  testing::Rig rig([&] { return make_carriers(options); });
   Node node;
   const auto near = dynamic::connect(node, rig.robot.url(), testing::Rig::login());
   const auto far = rig.connect();

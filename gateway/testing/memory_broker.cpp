@@ -8,18 +8,28 @@
 
 namespace rr::gateway::testing {
 
+namespace {
+
+const std::set<Traffic> all_traffic{Traffic::messages, Traffic::values};
+
+}  // namespace
+
 struct MemoryBroker::Client {
+  Traffic traffic = Traffic::messages;
   CarrierHandler* handler = nullptr;
   Message life;
   std::vector<std::string> filters;
   bool is_connected = false;
   bool is_stopped = false;
-  bool is_called = false;  // its handler runs now
+  bool is_called = false;   // its handler runs now
+  bool wants_room = false;  // a message was not taken
 };
 
 class MemoryBroker::MemoryCarrier final : public Carrier {
  public:
-  explicit MemoryCarrier(MemoryBroker& broker) : broker_(broker) {}
+  MemoryCarrier(MemoryBroker& broker, Traffic traffic) : broker_(broker) {
+    client_->traffic = traffic;
+  }
   ~MemoryCarrier() override { stop({}); }
 
   void start(CarrierHandler& handler, Message life) override {
@@ -41,6 +51,10 @@ class MemoryBroker::MemoryCarrier final : public Carrier {
   Published publish(const Message& message) override {
     const std::scoped_lock lock(broker_.mutex_);
     if (!client_->is_connected) return Published::later;
+    if (broker_.held_.contains(client_->traffic)) {
+      client_->wants_room = true;
+      return Published::later;
+    }
     if (message.payload.size() > broker_.faults_.largest) return Published::refused;
     if (!broker_.happens(broker_.faults_.dropped)) broker_.route(message);
     return Published::taken;
@@ -75,7 +89,9 @@ MemoryBroker::~MemoryBroker() {
   thread_.join();
 }
 
-std::unique_ptr<Carrier> MemoryBroker::carrier() { return std::make_unique<MemoryCarrier>(*this); }
+std::unique_ptr<Carrier> MemoryBroker::carrier(Traffic traffic) {
+  return std::make_unique<MemoryCarrier>(*this, traffic);
+}
 
 void MemoryBroker::set_faults(const Faults& faults) {
   const std::scoped_lock lock(mutex_);
@@ -85,9 +101,8 @@ void MemoryBroker::set_faults(const Faults& faults) {
 void MemoryBroker::crash() {
   std::unique_lock lock(mutex_);
   is_up_ = false;
-  queue_.clear();
   retained_.clear();
-  disconnect(lock, false);
+  disconnect(lock, all_traffic, false);
 }
 
 void MemoryBroker::restart() {
@@ -98,32 +113,74 @@ void MemoryBroker::restart() {
 
 void MemoryBroker::cut() {
   std::unique_lock lock(mutex_);
-  queue_.clear();
-  disconnect(lock, true);
+  disconnect(lock, all_traffic, true);
 }
 
 void MemoryBroker::set_links(bool are_up) {
-  {
-    const std::scoped_lock lock(mutex_);
-    links_are_up_ = are_up;
-    changed_.notify_all();
-  }
-  if (!are_up) cut();
+  std::unique_lock lock(mutex_);
+  down_ = are_up ? std::set<Traffic>() : all_traffic;
+  changed_.notify_all();
+  if (!are_up) disconnect(lock, all_traffic, true);
 }
 
-void MemoryBroker::disconnect(std::unique_lock<std::mutex>& lock, bool publishes_life) {
+void MemoryBroker::set_links(Traffic traffic, bool are_up) {
+  std::unique_lock lock(mutex_);
+  if (are_up) {
+    down_.erase(traffic);
+  } else {
+    down_.insert(traffic);
+  }
+  changed_.notify_all();
+  if (!are_up) disconnect(lock, {traffic}, true);
+}
+
+void MemoryBroker::hold(Traffic traffic, bool is_held) {
+  std::unique_lock lock(mutex_);
+  if (is_held) {
+    held_.insert(traffic);
+    return;
+  }
+  held_.erase(traffic);
+  release(lock);
+}
+
+void MemoryBroker::release(std::unique_lock<std::mutex>& lock) {
+  for (Delivery& delivery : std::exchange(kept_, {})) queue_.emplace(Clock::now(), delivery);
+  changed_.notify_all();
   const auto clients = clients_;
   for (const auto& client : clients) {
-    if (!std::exchange(client->is_connected, false)) continue;
+    if (held_.contains(client->traffic) || !std::exchange(client->wants_room, false)) continue;
+    call(lock, *client, [](CarrierHandler& handler) { handler.on_room(); });
+  }
+}
+
+/// Without the lock, and one call of a client at a time.
+void MemoryBroker::call(std::unique_lock<std::mutex>& lock, Client& client,
+                        const Function<void(CarrierHandler&)>& function) {
+  changed_.wait(lock, [&] { return !client.is_called; });
+  if (client.is_stopped) return;
+  client.is_called = true;
+  lock.unlock();
+  function(*client.handler);
+  lock.lock();
+  client.is_called = false;
+  changed_.notify_all();
+}
+
+void MemoryBroker::disconnect(std::unique_lock<std::mutex>& lock, const std::set<Traffic>& traffic,
+                              bool publishes_life) {
+  const auto is_lost = [&](const Delivery& delivery) {
+    return traffic.contains(delivery.client->traffic);
+  };
+  std::erase_if(queue_, [&](const auto& due) { return is_lost(due.second); });
+  std::erase_if(kept_, is_lost);
+  const auto clients = clients_;
+  for (const auto& client : clients) {
+    if (!traffic.contains(client->traffic) || !std::exchange(client->is_connected, false)) continue;
     if (publishes_life) route(client->life);
-    changed_.wait(lock, [&] { return !client->is_called; });
-    if (client->is_stopped) continue;
-    client->is_called = true;
-    lock.unlock();
-    client->handler->on_disconnected("the test has ended the connection");
-    lock.lock();
-    client->is_called = false;
-    changed_.notify_all();
+    call(lock, *client, [](CarrierHandler& handler) {
+      handler.on_disconnected("the test has ended the connection");
+    });
   }
 }
 
@@ -170,21 +227,16 @@ void MemoryBroker::enqueue(const std::shared_ptr<Client>& client, Message messag
 void MemoryBroker::connect_all(std::unique_lock<std::mutex>& lock) {
   const auto clients = clients_;
   for (const auto& client : clients) {
-    if (!is_up_ || !links_are_up_ || client->is_connected || client->is_stopped ||
+    if (!is_up_ || down_.contains(client->traffic) || client->is_connected || client->is_stopped ||
         client->is_called)
       continue;
     client->is_connected = true;
-    client->is_called = true;
     for (const auto& [topic, message] : retained_) {
       for (const std::string& filter : client->filters) {
         if (topic_matches(filter, topic)) enqueue(client, message);
       }
     }
-    lock.unlock();
-    client->handler->on_connected();
-    lock.lock();
-    client->is_called = false;
-    changed_.notify_all();
+    call(lock, *client, [](CarrierHandler& handler) { handler.on_connected(); });
   }
 }
 
@@ -192,14 +244,14 @@ void MemoryBroker::deliver(std::unique_lock<std::mutex>& lock) {
   auto delivery = std::move(queue_.extract(queue_.begin()).mapped());
   Client& client = *delivery.client;
   if (!client.is_connected || client.is_stopped) return;
+  if (held_.contains(client.traffic)) {
+    kept_.push_back(std::move(delivery));
+    return;
+  }
   changed_.wait(lock, [&] { return !client.is_called; });
-  if (!client.is_connected || client.is_stopped) return;
-  client.is_called = true;
-  lock.unlock();
-  client.handler->on_message(std::move(delivery.message));
-  lock.lock();
-  client.is_called = false;
-  changed_.notify_all();
+  if (!client.is_connected) return;
+  call(lock, client,
+       [&](CarrierHandler& handler) { handler.on_message(std::move(delivery.message)); });
 }
 
 void MemoryBroker::run() {

@@ -9,11 +9,13 @@
 #include <mutex>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "gateway/carrier.hpp"
+#include "rr/function.hpp"
 
 /// A broker in memory, for tests: it delays, drops, delivers twice and disconnects as it is told.
 namespace rr::gateway::testing {
@@ -26,6 +28,12 @@ struct Faults {
   std::size_t largest = std::size_t{1} << 30U;
 };
 
+/// What a connection is for.
+enum class Traffic {
+  messages,
+  values,
+};
+
 /// Outlives its carriers.
 class MemoryBroker {
  public:
@@ -35,7 +43,9 @@ class MemoryBroker {
   MemoryBroker& operator=(const MemoryBroker&) = delete;
 
   /// A carrier to this broker that is not started.
-  std::unique_ptr<Carrier> carrier();
+  std::unique_ptr<Carrier> carrier(Traffic traffic = Traffic::messages);
+  /// Both of a gateway.
+  Carriers carriers() { return {carrier(Traffic::messages), carrier(Traffic::values)}; }
   /// From now on.
   void set_faults(const Faults& faults);
   /// Loses all messages under way and all retained ones, and ends all connections. Their lives are
@@ -47,6 +57,10 @@ class MemoryBroker {
   void cut();
   /// cut(), and no connection is made until links are up again.
   void set_links(bool are_up);
+  /// The same of the connections for one traffic.
+  void set_links(Traffic traffic, bool are_up);
+  /// Connections for the traffic carry nothing until they are released, and are not lost by that.
+  void hold(Traffic traffic, bool is_held);
   /// What is retained at a topic.
   [[nodiscard]] std::optional<Message> retained(const std::string& topic) const;
   /// Messages that were published to topics that fit the filter.
@@ -64,7 +78,11 @@ class MemoryBroker {
   void run();
   void connect_all(std::unique_lock<std::mutex>& lock);
   void deliver(std::unique_lock<std::mutex>& lock);
-  void disconnect(std::unique_lock<std::mutex>& lock, bool publishes_life);
+  void release(std::unique_lock<std::mutex>& lock);
+  void disconnect(std::unique_lock<std::mutex>& lock, const std::set<Traffic>& traffic,
+                  bool publishes_life);
+  void call(std::unique_lock<std::mutex>& lock, Client& client,
+            const Function<void(CarrierHandler&)>& function);
   void route(const Message& message);
   void enqueue(const std::shared_ptr<Client>& client, Message message);
   bool happens(double share);
@@ -74,12 +92,14 @@ class MemoryBroker {
   std::mt19937 random_;
   Faults faults_;
   bool is_up_ = true;
-  bool links_are_up_ = true;
+  std::set<Traffic> down_;  // no connections are made
+  std::set<Traffic> held_;
   bool ends_ = false;
   std::vector<std::shared_ptr<Client>> clients_;
   std::map<std::string, Message> retained_;
   std::map<std::string, std::size_t> counts_;
   std::multimap<Clock::time_point, Delivery> queue_;
+  std::vector<Delivery> kept_;  // for connections that are held
   std::thread thread_;
 };
 

@@ -24,14 +24,15 @@ inline bool value_comes(const dynamic::WireConnection& wire, double wanted) {
   });
 }
 
-/// A robot, both gateways over two carriers, and a client that knows of neither.
+/// A robot, both gateways, and a client that knows of neither.
 class Rig {
  public:
-  explicit Rig(Function<std::unique_ptr<Carrier>()> make_carrier,
+  /// `make_carriers` is called for each start of a gateway, that of the robot first.
+  explicit Rig(Function<Carriers()> make_carriers,
                std::chrono::milliseconds limit = std::chrono::milliseconds(20'000),
                const std::string& extra = "", const std::string& password = "open sesame",
                const std::string& definition = bench_definition)
-      : robot(definition), make_carrier_(std::move(make_carrier)), limit_(limit) {
+      : robot(definition), make_carriers_(std::move(make_carriers)), limit_(limit) {
     rules = extra + rules;
     std::ofstream(folder_.path() + "/secret") << password << "\n";
     std::ofstream(folder_.path() + "/login") << "open sesame\n";
@@ -40,8 +41,8 @@ class Rig {
   }
 
   void start_export() {
-    export_carrier_ = make_carrier_();
-    exporter_.emplace(export_file(folder_.path()), *export_carrier_, logger());
+    export_carriers_ = make_carriers_();
+    exporter_.emplace(export_file(folder_.path()), export_carriers_, logger());
   }
   /// The export file, with its state in another folder.
   [[nodiscard]] ExportFile export_file(const std::string& state) const {
@@ -60,14 +61,14 @@ class Rig {
   void start_server() {
     server_node_ = std::make_unique<Node>();
     port_ = server_node_->listen_tcp(0);
-    server_carrier_ = make_carrier_();
+    server_carriers_ = make_carriers_();
     ServerOptions options;
     options.services = {{{"hall", "robot", "bench"}, "bench"}};
     options.reader = "hub";
     options.limit = limit_;
     options.repeat = std::chrono::milliseconds(300);
     options.session_alive = std::chrono::milliseconds(300);
-    server_.emplace(options, *server_node_, *server_carrier_, logger());
+    server_.emplace(options, *server_node_, server_carriers_, logger());
   }
   void stop_server() {
     server_.reset();
@@ -114,14 +115,14 @@ class Rig {
     return [this](LogLevel, const std::string& text) { log.add(text); };
   }
 
-  Function<std::unique_ptr<Carrier>()> make_carrier_;
+  Function<Carriers()> make_carriers_;
   std::chrono::milliseconds limit_;
   Folder folder_;
-  std::unique_ptr<Carrier> export_carrier_;
+  Carriers export_carriers_;
   std::optional<Exporter> exporter_;
   std::unique_ptr<Node> server_node_;
   std::uint16_t port_ = 0;
-  std::unique_ptr<Carrier> server_carrier_;
+  Carriers server_carriers_;
   std::optional<Server> server_;
   Node client_node_;
 };
