@@ -7,11 +7,11 @@ set -eu
 robdef=$1 native=$2 artifacts=$3 project=$4
 shift 4
 here=$(cd "$(dirname "$0")" && pwd)
-generated=$artifacts/generated
+generated=$artifacts/generated/$(basename "$project")
 rm -rf "$generated"
 mkdir -p "$generated"
-"$robdef" generate --lang csharp -o "$generated" "$@" 2>"$artifacts/findings.txt" || {
-  cat "$artifacts/findings.txt" >&2
+"$robdef" generate --lang csharp -o "$generated" "$@" 2>"$generated.txt" || {
+  cat "$generated.txt" >&2
   exit 1
 }
 if [ -n "${ROBDEF_NUGET_SOURCE:-}" ]; then

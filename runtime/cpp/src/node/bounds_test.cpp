@@ -18,6 +18,7 @@
 #include "runtime/cpp/src/node/testing/async_counter.hpp"
 #include "runtime/cpp/src/node/testing/gated_counter.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/src/node/testing/raw_client.hpp"
 #include "runtime/cpp/src/node/testing/raw_peer.hpp"
 
@@ -254,8 +255,12 @@ bool serves_quick_ones_meanwhile(std::chrono::milliseconds patience) {
 
 // The last two poll and watch: a client that wants another one waits, and others do not.
 TEST(Bounds, AllButTwoThreadsMayBeInHandlersThatWait) {
-  EXPECT_TRUE(serves_quick_ones_meanwhile(2s) || serves_quick_ones_meanwhile(4s) ||
-              serves_quick_ones_meanwhile(8s));
+  // The slower a build is, the more often quick ones look slow.
+  bool are_served = false;
+  for (int left = 3 * slowness(); left != 0 && !are_served; --left) {
+    are_served = serves_quick_ones_meanwhile(2s);
+  }
+  EXPECT_TRUE(are_served);
 }
 
 TEST(Bounds, TimesWithoutAnEndNeverCome) {
