@@ -45,19 +45,19 @@ class Mutation {
   void change() {
     switch (below(16)) {
       case 0:
-        return insert(line_begin(), one_of(blank_lines));
+        return insert_one(line_begin(), blank_lines);
       case 1:
         return indent();
       case 2:
-        return insert(behind_any(" "), one_of(blanks));
+        return insert_one(behind_any(" "), blanks);
       case 3:
-        return insert(behind_any(",()[]{}=:"), one_of(blanks));
+        return insert_one(behind_any(",()[]{}=:"), blanks);
       case 4:
         return continue_line();
       case 5:
-        return insert(line_begin(), one_of(comments));
+        return insert_one(line_begin(), comments);
       case 6:
-        return insert(line_end(line_begin()), one_of(blanks));
+        return insert_one(line_end(line_begin()), blanks);
       case 7:
         return insert(line_end(line_begin()), "\r");
       case 8:
@@ -69,15 +69,23 @@ class Mutation {
       case 11:
         return repeat_line();
       case 12:
-        return erase(below(text_.size()), 1 + below(12));
+        return erase_some(below(text_.size()), 12);
       case 13:
         return remove_blank_line();
       case 14:
         return use_carriage_returns();
       default:
-        return insert(below(text_.size() + 1), one_of(scraps));
+        return insert_one(below(text_.size() + 1), scraps);
     }
   }
+
+  // The place is chosen first: compilers evaluate arguments in different orders, and a seed is to
+  // give the same text everywhere.
+  template <std::size_t size>
+  void insert_one(std::size_t at, const std::array<std::string_view, size>& choices) {
+    insert(at, one_of(choices));
+  }
+  void erase_some(std::size_t at, std::size_t most) { erase(at, 1 + below(most)); }
 
   void insert(std::size_t at, const std::string& what) {
     text_.insert(std::min(at, text_.size()), what);
@@ -94,7 +102,8 @@ class Mutation {
 
   void continue_line() {
     const std::size_t at = behind_any(" ");
-    if (at < text_.size()) text_.replace(at - 1, below(2), one_of(continuations));
+    const std::size_t count = below(2);
+    if (at < text_.size()) text_.replace(at - 1, count, one_of(continuations));
   }
 
   void remove_last_line_end() {

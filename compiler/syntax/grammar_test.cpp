@@ -65,10 +65,11 @@ struct ReadText {
       const bool is_code =
           line.kind == ast::LineKind::statement || line.kind == ast::LineKind::unread;
       if (!is_code) continue;
-      fits = fits && line.kind == ast::LineKind::statement;
       const std::string content =
           joined(std::string_view(sources[id].text()).substr(line.begin, line.end - line.begin));
-      if (!content.empty()) logical_text += content + '\n';
+      if (content.empty()) continue;  // blanks that go on
+      fits = fits && line.kind == ast::LineKind::statement;
+      logical_text += content + '\n';
     }
   }
 
