@@ -135,7 +135,9 @@ Outgoing MemoryTransfer::request() {
   }
   const bool is_write = direction_ == Direction::write;
   if (is_write) {
-    data_.items.share(items_ + part_.offset * form_.item->size, part_.size, {});
+    // The items may be given in another way, as elements.
+    std::byte* const at = items_ == nullptr ? nullptr : items_ + part_.offset * form_.item->size;
+    data_.items.share(at, part_.size, {});
   }
   return {is_write ? EntryType::memory_write : EntryType::memory_read,
           path_,

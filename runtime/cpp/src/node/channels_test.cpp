@@ -12,6 +12,7 @@
 #include "rr/channel.hpp"
 #include "rr/intra.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/src/node/testing/raw_socket.hpp"
 
 namespace rr::testing {
@@ -163,7 +164,7 @@ TEST(Handshakes, AThousandSlowOnesDoNotHoldUpAClient) {
       const auto begin = Clock::now();
       const auto counter = client.connect<CounterStub>(scheme + place);
       EXPECT_EQ(counter->add(1, 2), 3);
-      EXPECT_LT(Clock::now() - begin, std::chrono::seconds(1)) << scheme;
+      EXPECT_LT(Clock::now() - begin, std::chrono::seconds(slowness())) << scheme;
     }
   }
 }
