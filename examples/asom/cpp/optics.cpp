@@ -59,7 +59,9 @@ std::vector<std::uint8_t> make_specimen() {
       }
     }
     for (int grain = 0; grain < 4; ++grain) {
-      set(middle_x + next(radius) - radius / 2, middle_y + next(radius) - radius / 2, 255);
+      const int y = middle_y + next(radius) - radius / 2;
+      const int x = middle_x + next(radius) - radius / 2;
+      set(x, y, 255);
     }
   }
   return gray;
