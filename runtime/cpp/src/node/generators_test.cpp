@@ -298,7 +298,7 @@ TEST(Generators, OfAnotherObjectAreNotFound) {
 
 TEST(Generators, ThatNobodyUsesAreDropped) {
   NodeOptions options;
-  options.generator_timeout = 60ms;
+  options.generator_timeout = 400ms;
   BoardPair pair(options);
   pair.object->held = std::make_shared<int>();
   const std::weak_ptr<void> watch = pair.object->held;
@@ -309,7 +309,7 @@ TEST(Generators, ThatNobodyUsesAreDropped) {
   closed.close();
   for (int i = 1; i <= 20; ++i) {
     EXPECT_EQ(counter.next(), i);
-    std::this_thread::sleep_for(10ms);
+    std::this_thread::sleep_for(25ms);
   }
   EXPECT_EQ(code_of([&] { closed.next(); }), ErrorCode::invalid_operation);
   EXPECT_TRUE(eventually([&] { return watch.expired(); }));
