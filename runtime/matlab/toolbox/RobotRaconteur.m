@@ -272,7 +272,8 @@ classdef RobotRaconteur
       %   AuditFile (lines of JSON: who connects, logs in, is refused), AuditRequests (handled
       %   requests, too); SharedMemory (messages and wires of rr+local go through memory where the
       %   other node has it, too), Spin (seconds, up to 0.001, that a waiting thread looks for a
-      %   message before it sleeps, with SharedMemory); AllowClearCredentials (log in without TLS where discovery has found a URL);
+      %   message before it sleeps, with SharedMemory); AllowClearCredentials (log in without TLS
+      %   where discovery has found a URL);
       %   ClientOffer and ServerOffer: structs with any of MessageV4, StringTable, CombinedConnect.
       rrmex('node_options', options);
     end
