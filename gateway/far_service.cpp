@@ -128,13 +128,14 @@ void FarService::offer(const std::vector<std::string>& texts) {
   const auto type = definition_->find("object");
   root_ = make_object("", std::string(type.value_or("")));
   service_ = dynamic::register_service(shared_.node, name_, root_, service_options());
-  keep_locks(*service_, std::make_shared<FarLocks>(sessions_, address_));
   shared_.log(LogLevel::info, topic_ + " is offered as `" + name_ + "`");
   shared_.pump();
 }
 
 ServiceOptions FarService::service_options() const {
   ServiceOptions options;
+  // From the first request on: a client may connect as soon as the service is registered.
+  options.lock_keeper = std::make_shared<FarLocks>(sessions_, address_);
   options.on_client_connected = [sessions = sessions_](const ServiceClient& client) {
     sessions->begin(client.endpoint);
   };

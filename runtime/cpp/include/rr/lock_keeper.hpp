@@ -33,7 +33,7 @@ struct LockRequest {
   std::chrono::milliseconds timeout{0};
 };
 
-/// Answers requests for locks and monitors in place of the service.
+/// Answers requests for locks and monitors in place of the service: ServiceOptions::lock_keeper.
 class LockKeeper {
  public:
   /// What has become of a request: an exception, which the client gets, or null for success.
@@ -46,10 +46,5 @@ class LockKeeper {
   /// A client that waits for a monitor expects an answer within 5 s.
   virtual void keep(LockRequest request, Answer answer) = 0;
 };
-
-/// From now on the keeper is asked, whether the service has users or not. The service refuses
-/// nothing by itself because of locks and monitors. Before the first client has locked something.
-/// Throws rr::Error (invalid_operation) for a service that is none of this runtime.
-void keep_locks(const Service& service, std::shared_ptr<LockKeeper> keeper);
 
 }  // namespace rr

@@ -22,6 +22,8 @@
 /// The service's side: what a node offers under a name.
 namespace RR_VISIBLE rr {
 
+class LockKeeper;
+
 /// A client that is connected to a service.
 struct ServiceClient {
   std::uint32_t endpoint = 0;  ///< its number in this node
@@ -73,6 +75,9 @@ struct ServiceOptions {
   std::string rights_file{};
   /// A session that is in an object's monitor and does not use the object for so long is out.
   std::chrono::milliseconds monitor_patience{30'000};
+  /// Asked about every lock and monitor of clients in place of the service, with users or without
+  /// (rr/lock_keeper.hpp); the service refuses nothing by itself because of them. Null: none.
+  std::shared_ptr<LockKeeper> lock_keeper{};
   /// How much clients may make it keep.
   ServiceLimits limits{};
   /// Called on a thread of the node, before the first request of a client.

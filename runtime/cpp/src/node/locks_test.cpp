@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "rr/call.hpp"
+#include "rr/lock_keeper.hpp"
 #include "rr/users.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -245,6 +246,50 @@ TEST(Locks, EndWhenTheObjectIsReleased) {
   EXPECT_EQ(code_of([&] { bob->get_by_name("a")->get_value(); }), locked);
   pair.service->release_path("counter.by_name[a]");
   EXPECT_EQ(bob->get_by_name("a")->get_value(), 0);
+}
+
+// Says yes to everything, and keeps what it was asked.
+class Agreeing final : public LockKeeper {
+ public:
+  void keep(LockRequest request, Answer answer) override {
+    {
+      const MutexLock lock(mutex_);
+      asked_.push_back(std::move(request));
+    }
+    answer(nullptr, false);
+  }
+  std::vector<LockRequest> asked() const {
+    const MutexLock lock(mutex_);
+    return asked_;
+  }
+
+ private:
+  mutable Mutex mutex_;
+  std::vector<LockRequest> asked_ RR_GUARDED_BY(mutex_);
+};
+
+TEST(Locks, AreLeftToAKeeperFromTheFirstRequestOn) {
+  const auto keeper = std::make_shared<Agreeing>();
+  Pair pair({}, {}, std::make_shared<Counter>(), {.lock_keeper = keeper});  // needs no users
+  auto one = pair.connect();
+  auto other = pair.connect();
+  lock(*one, LockOwner::session);
+  EXPECT_EQ(other->get_value(), 0);  // the service itself knows of no lock
+  unlock(*one);
+  enter_monitor(*one, 250ms);
+  exit_monitor(*one);
+  const std::vector<LockRequest> asked = keeper->asked();
+  using Operation = LockRequest::Operation;
+  std::vector<Operation> operations;
+  for (const LockRequest& request : asked) {
+    operations.push_back(request.operation);
+    EXPECT_EQ(request.path, one->rr_path());
+    EXPECT_NE(request.client, 0U);
+  }
+  EXPECT_THAT(operations,
+              ::testing::ElementsAre(Operation::lock_for_session, Operation::unlock,
+                                     Operation::enter_monitor, Operation::exit_monitor));
+  EXPECT_EQ(asked.at(2).timeout, 250ms);
 }
 
 TEST(Monitors, LetOneSessionIn) {

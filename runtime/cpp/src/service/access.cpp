@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/lock_keeper.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
@@ -166,7 +167,8 @@ void ServerEndpoint::end_what_is_not_allowed(ServiceHost& host, bool is_all) {
 
 void ServerEndpoint::answer_session_operation(const Question& question) {
   const std::string_view operation = question.entry.member;
-  if (const auto keeper = host_->lock_keeper(); keeper && ask_keeper(*keeper, question)) return;
+  if (LockKeeper* const keeper = host_->lock_keeper(); keeper && ask_keeper(*keeper, question))
+    return;
   if (operation.starts_with("Monitor")) {
     answer_monitor_operation(question);
     return;

@@ -189,16 +189,6 @@ std::shared_ptr<const Rights> ServiceHost::rights() const {
   return rights_;
 }
 
-std::shared_ptr<LockKeeper> ServiceHost::lock_keeper() const {
-  const MutexLock lock(mutex_);
-  return lock_keeper_;
-}
-
-void ServiceHost::set_lock_keeper(std::shared_ptr<LockKeeper> keeper) {
-  const MutexLock lock(mutex_);
-  lock_keeper_.swap(keeper);
-}
-
 void ServiceHost::set_rights(std::shared_ptr<const Rights> rights) {
   {
     const MutexLock lock(mutex_);
@@ -372,11 +362,5 @@ void ServiceHost::close() {
 }
 
 }  // namespace service
-
-void keep_locks(const Service& service, std::shared_ptr<LockKeeper> keeper) {
-  const auto host = std::dynamic_pointer_cast<service::ServiceHost>(service.context());
-  if (!host) throw Error(ErrorCode::invalid_operation, "this is no service of the runtime");
-  host->set_lock_keeper(std::move(keeper));
-}
 
 }  // namespace rr

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "rr/lock_keeper.hpp"
 #include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -83,8 +82,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] Locks& locks() { return locks_; }
   [[nodiscard]] Monitors& monitors() { return *monitors_; }
   /// The keeper of locks and monitors in place of these two; null for none.
-  [[nodiscard]] std::shared_ptr<LockKeeper> lock_keeper() const;
-  void set_lock_keeper(std::shared_ptr<LockKeeper> keeper);
+  [[nodiscard]] LockKeeper* lock_keeper() const { return options_.lock_keeper.get(); }
 
   /// False when the service has been closed.
   bool add_client(const std::shared_ptr<ServerEndpoint>& client);
@@ -129,7 +127,6 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   std::atomic<bool> is_started_{false};
   mutable Mutex mutex_;
   std::shared_ptr<const Clients> clients_ RR_GUARDED_BY(mutex_);  // replaced, never changed
-  std::shared_ptr<LockKeeper> lock_keeper_ RR_GUARDED_BY(mutex_);
   bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 };
 
