@@ -178,6 +178,9 @@ class Exporter::Core final : public CarrierHandler {
     values_ended.wait();
     worker_->stop();
     services_.clear();
+    // Its threads may be in a handler of a service that was only just released, and such handlers
+    // post to the worker.
+    node_.shutdown();
   }
 
   void on_message(Message message) override {

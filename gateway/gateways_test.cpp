@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 #include <string>
 #include <thread>
 
@@ -341,6 +343,44 @@ TEST_F(Gateways, TheExportingGatewayIsRestarted) {
     const auto packet = samples.try_receive();
     return packet && packet->as<int>() == 2;
   }));
+}
+
+// Handlers of the robot's events, and requests that are executed, use nothing that has ended: they
+// crash, or wait for ever, or sanitizers find them.
+TEST_F(Gateways, TheExportingGatewayEndsWhileRequestsAreExecuted) {
+  std::atomic<bool> ends{false};
+  const auto repeat = [&](const Function<void()>& action) {
+    return std::async(std::launch::async, [&ends, action] {
+      while (!ends) {
+        action();
+        std::this_thread::sleep_for(std::chrono::microseconds(20));
+      }
+    });
+  };
+  const auto bench = rig.connect();
+  const auto tool = bench->object("tools", "left hand");
+  const auto sending = repeat([&] {
+    rig.robot.bench().pipe("samples").send(1);
+    rig.robot.bench().wire("force").set_in(1);
+  });
+  std::atomic<int> asked{0};
+  const auto asking = repeat([&] {
+    if (asked > 50) return;
+    ++asked;
+    tool.async_get("width", [&](const std::exception_ptr&, const dynamic::Value&) { --asked; });
+  });
+  for (int i = 0; i < 15; ++i) {
+    rig.stop_export();
+    rig.start_export();
+    EXPECT_TRUE(comes_true([&] {
+      return rig.robot.bench().pipe("samples").endpoint_count() == 1 &&
+             rig.robot.bench().wire("force").connection_count() == 1;
+    })) << i;
+    EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+  }
+  ends = true;
+  asking.wait();
+  EXPECT_TRUE(comes_true([&] { return asked == 0; }));
 }
 
 TEST_F(Gateways, AnswersGoNowhereElse) {
