@@ -12,6 +12,8 @@ namespace rr::gateway {
 namespace {
 
 constexpr std::chrono::seconds closing_tick{60};
+/// For answers of a session that the robot has ended.
+constexpr std::chrono::seconds longest_answer{2};
 
 }  // namespace
 
@@ -49,7 +51,7 @@ void ExportedSessions::open(Node& node, const std::string& url, const MappedUser
   const auto post = [&worker = worker_](Function<void()> task) { worker.post(std::move(task)); };
   auto session =
       std::make_shared<ExportedSession>(post, listener(key, std::move(opened)), reply_topic);
-  entries_[key] = {session, Clock::now()};
+  entries_[key] = {.session = session, .used = Clock::now()};
   session->open(node, url, login);
 }
 
@@ -70,7 +72,13 @@ ExportedSession::Listener ExportedSessions::listener(const Key& key, Opened open
 void ExportedSessions::ended_by_robot(const Key& key) {
   const auto found = entries_.find(key);
   if (found == entries_.end()) return;
-  ended_(key.second, found->second.session->reply_topic());
+  // A client that is disconnected would not get the error of the request that ended the session.
+  found->second.ended = Clock::now();
+  if (found->second.requests == 0) tell_end(key);
+}
+
+void ExportedSessions::tell_end(const Key& key) {
+  ended_(key.second, entries_.at(key).session->reply_topic());
   end(key.first, key.second);
 }
 
@@ -89,6 +97,20 @@ std::shared_ptr<ExportedSession> ExportedSessions::find(const std::string& user,
   if (found == entries_.end() || !found->second.session->is_open()) return nullptr;
   found->second.used = Clock::now();
   return found->second.session;
+}
+
+void ExportedSessions::request_begun(const std::string& user, std::string_view name) {
+  const auto found = entries_.find({user, std::string(name)});
+  if (found != entries_.end()) ++found->second.requests;
+}
+
+void ExportedSessions::request_answered(const std::string& user, std::string_view name,
+                                        const std::shared_ptr<ExportedSession>& session) {
+  const Key key{user, std::string(name)};
+  const auto found = entries_.find(key);
+  // There may be another one by this name.
+  if (found == entries_.end() || found->second.session != session) return;
+  if (--found->second.requests == 0 && found->second.ended) tell_end(key);
 }
 
 void ExportedSessions::end(const std::string& user, std::string_view name) {
@@ -117,10 +139,16 @@ void ExportedSessions::released(const std::string& user, const std::string& path
 
 void ExportedSessions::tick(Clock::time_point now) {
   std::vector<Key> silent;
+  std::vector<Key> ended;
   for (auto& [key, entry] : entries_) {
     entry.session->tick(now);
-    if (now - entry.used >= limits_.silence) silent.push_back(key);
+    if (entry.ended && now - *entry.ended >= longest_answer) {
+      ended.push_back(key);
+    } else if (now - entry.used >= limits_.silence) {
+      silent.push_back(key);
+    }
   }
+  for (const Key& key : ended) tell_end(key);
   for (const Key& key : silent) end(key.first, key.second);
 }
 

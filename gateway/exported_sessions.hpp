@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,7 +28,8 @@ class ExportedSessions {
   /// Null when the session has begun.
   using Opened = Function<void(std::exception_ptr)>;
 
-  /// Called when the robot has ended a session, with its name and where its gateway reads.
+  /// Called when the robot has ended a session, with its name and where its gateway reads: after
+  /// the answers of its requests.
   using Ended = Function<void(const std::string& name, const std::string& reply_topic)>;
 
   ExportedSessions(Worker& worker, const Limits& limits, Ended ended);
@@ -44,6 +46,10 @@ class ExportedSessions {
             const std::string& name, const std::string& reply_topic, Opened opened);
   /// One that has begun, which is in use from now on; null when it has ended.
   std::shared_ptr<ExportedSession> find(const std::string& user, std::string_view name);
+  /// A request in the session is executed: once it is answered, request_answered() with the same.
+  void request_begun(const std::string& user, std::string_view name);
+  void request_answered(const std::string& user, std::string_view name,
+                        const std::shared_ptr<ExportedSession>& session);
   /// Ends one, if it is there.
   void end(const std::string& user, std::string_view name);
   /// Those of these names, with commas between them, are in use. Returns those that have ended.
@@ -57,12 +63,15 @@ class ExportedSessions {
   struct Entry {
     std::shared_ptr<ExportedSession> session;
     Clock::time_point used;
+    std::size_t requests = 0;                  // without an answer
+    std::optional<Clock::time_point> ended{};  // by the robot, which is told after these answers
   };
   using Key = std::pair<std::string, std::string>;  // user, name
   using Entries = std::map<Key, Entry>;
 
   ExportedSession::Listener listener(const Key& key, Opened opened);
   void ended_by_robot(const Key& key);
+  void tell_end(const Key& key);
   void finish(const Key& key, const std::exception_ptr& error, const Opened& opened);
   void close(std::shared_ptr<ExportedSession> session);
 

@@ -174,6 +174,18 @@ TEST_F(FarLocksTest, TheClientIsDisconnectedWhenTheRobotEndsItsSession) {
   EXPECT_TRUE(two.is_open());
 }
 
+// An answer with this error makes clients end their session.
+TEST_F(FarLocksTest, TheAnswerThatEndsTheSessionArrives) {
+  for (int i = 0; i < 30; ++i) {
+    const auto client = rig.connect();
+    lock(client->stub(), LockOwner::session);
+    EXPECT_EQ(code_of_lock([&] { return client->call("fail", {std::string("invalid endpoint")}); }),
+              ErrorCode::invalid_endpoint)
+        << i;
+    EXPECT_TRUE(is_released());
+  }
+}
+
 TEST_F(FarLocksTest, AreTakenOnceOverABadLink) {
   broker.set_faults({.dropped = 0.2, .twice = 0.3, .delay = milliseconds(5)});
   for (int i = 0; i < 20; ++i) {

@@ -103,11 +103,14 @@ void set(const dynamic::Object& object, const dynamic::MemberDescription& member
 }  // namespace
 
 void ServiceExporter::execute(const RequestTopic& request, const Message& message) {
-  const Executed done = [weak = Weak(shared_from_this()), request, message](
+  const std::string name(message.find("session").value_or(""));
+  const auto session = name.empty() ? nullptr : sessions_.find(request.user, name);
+  if (session) sessions_.request_begun(request.user, name);
+  const Executed done = [weak = Weak(shared_from_this()), request, message, name, session](
                             const std::exception_ptr& error, const Message& result) {
     const Self self = weak.lock();
     if (!self) return;
-    self->shared_.worker.post([weak, request, message, error, result] {
+    self->shared_.worker.post([weak, request, message, name, session, error, result] {
       const Self exporter = weak.lock();
       if (!exporter) return;
       if (error) {
@@ -115,6 +118,7 @@ void ServiceExporter::execute(const RequestTopic& request, const Message& messag
       } else {
         exporter->answer(request, message, result);
       }
+      if (session) exporter->sessions_.request_answered(request.user, name, session);
     });
   };
   if (request.verb == Verb::next) {
@@ -125,8 +129,6 @@ void ServiceExporter::execute(const RequestTopic& request, const Message& messag
     }
     return;
   }
-  const auto name = message.find("session");
-  const auto session = name ? sessions_.find(request.user, *name) : nullptr;
   find_object_for(request, message,
                   [weak = Weak(shared_from_this()), request, message, session, done](
                       const std::exception_ptr& error, const dynamic::Object& object) {

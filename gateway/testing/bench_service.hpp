@@ -132,7 +132,9 @@ class BenchService {
       return arguments[0].text() + " at " + std::to_string(arguments[1]["x"].as<double>());
     });
     bench_.on_call("fail", [](const dynamic::List& arguments) -> dynamic::Value {
-      throw Error(ErrorCode::remote_error, "test.bench.Jam", arguments[0].text());
+      const std::string text = arguments[0].text();
+      if (text == "invalid endpoint") throw Error(ErrorCode::invalid_endpoint, text);
+      throw Error(ErrorCode::remote_error, "test.bench.Jam", text);
     });
     bench_.on_call("whoami", [](const dynamic::List&) {
       const auto user = ServiceContext::current_user();
