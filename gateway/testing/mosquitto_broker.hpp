@@ -41,6 +41,7 @@ class MosquittoBroker final : public RealBroker {
       file << "require_certificate true\nuse_identity_as_username true\ncafile "
            << setup.client_authority << "\n";
     }
+    file << setup.more;
   }
   [[nodiscard]] std::string url(bool is_encrypted) const override {
     return (is_encrypted ? "mqtts://127.0.0.1:" : "mqtt://127.0.0.1:") + std::to_string(port());

@@ -27,6 +27,7 @@ struct BrokerSetup {
   std::string access_list{};       ///< for these users, as the program prints it; empty: all rights
   std::string certificate{};       ///< PEM file with its key: TLS
   std::string client_authority{};  ///< of certificates that clients need; empty: they need none
+  std::string more{};              ///< lines for its configuration
 };
 
 /// Whether a program of this machine takes connections at a port.

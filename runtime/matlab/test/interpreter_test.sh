@@ -19,7 +19,7 @@ cd "$work"
 # expect NAME STATUS PATTERN CODE: what Octave ends with, and a line of what it says.
 expect() {
   local name=$1 wanted=$2 pattern=$3 code=$4 status=0
-  timeout -s KILL 60 "$octave" --norc "${paths[@]}" --eval "$code" > "$work/output" 2>&1 || status=$?
+  timeout -s KILL 180 "$octave" --norc "${paths[@]}" --eval "$code" > "$work/output" 2>&1 || status=$?
   if [ "$status" != "$wanted" ] || ! grep -q -- "$pattern" "$work/output"; then
     echo "FAILED: $name: ended with $status, and said:"
     cat "$work/output"
