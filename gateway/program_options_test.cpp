@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/program_options.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
 
 #include "rr/error.hpp"
 
@@ -78,6 +84,19 @@ TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
 TEST(GatewayOptions, HelpWins) {
   EXPECT_EQ(read_options({}).task, Task::help);
   EXPECT_EQ(read_options({"--help", "--nonsense"}).task, Task::help);
+}
+
+TEST(GatewayOptions, AreAllInTheManual) {
+  std::ostringstream manual;
+  manual << std::ifstream(ROBDEF_GATEWAY_MANUAL).rdbuf();
+  const std::string text = std::regex_replace(manual.str(), std::regex(R"(\\-)"), "-");
+  const std::string help = program_help;
+  const std::regex option("--[a-z][a-z-]*[a-z]");
+  int count = 0;
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at, ++count) {
+    EXPECT_THAT(text, ::testing::HasSubstr(at->str()));
+  }
+  EXPECT_GE(count, 12);
 }
 
 }  // namespace

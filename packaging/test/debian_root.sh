@@ -82,6 +82,22 @@ inside sh /one.sh >"$work/one" 2>&1 || { cat "$work/one" >&2; fail 'a program wi
 readelf -d "$root/one_get" | grep -q 'librobdef_web.so.1' || fail 'web sockets are not linked'
 echo 'debian_root: pkg-config, web sockets from a shared library'
 
+# The gateway: it starts, with what it needs, and its units name what is there.
+if ls "$root"/packages/robdef-gateway_*.deb >/dev/null 2>&1; then
+  offline sh -c 'apt-get install -q -y --no-install-recommends /packages/robdef-gateway_*.deb' >"$work/gateway.log" 2>&1 ||
+    { tail -n 30 "$work/gateway.log" >&2; fail 'robdef-gateway cannot be installed'; }
+  inside sh -c 'robdef-gateway --acl mosquitto /usr/share/doc/robdef-doc/examples/fleet/room.toml' >"$work/acl" 2>&1 ||
+    { cat "$work/acl" >&2; fail 'robdef-gateway does not work'; }
+  grep -q '^user ' "$work/acl" || fail 'robdef-gateway prints no access list'
+  for unit in robdef-gateway@ robdef-gateway-serve; do
+    program=$(sed -n 's/^ExecStart=\([^ ]*\).*/\1/p' "$root/lib/systemd/system/$unit.service")
+    [ -x "$root$program" ] || fail "$unit.service starts $program, which is not there"
+    user=$(sed -n 's/^User=//p' "$root/lib/systemd/system/$unit.service")
+    inside getent passwd "$user" >"$work/user" || fail "$unit.service has a user that is not there"
+  done
+  echo 'debian_root: robdef-gateway, its units and their user'
+fi
+
 # Octave, if it was packed.
 if ls "$root"/packages/octave-robdef_*.deb >/dev/null 2>&1; then
   offline sh -c 'apt-get install -q -y --no-install-recommends /packages/octave-robdef_*.deb' >"$work/octave.log" 2>&1 ||
@@ -97,7 +113,7 @@ END
   echo 'debian_root: pkg load robdef in Octave'
 fi
 
-inside apt-get purge -q -y robdef librobdef1 librobdef-dev robdef-doc octave-robdef >"$work/purge.log" 2>&1 || fail 'the packages cannot be removed'
+inside apt-get purge -q -y robdef robdef-gateway librobdef1 librobdef-dev robdef-doc octave-robdef >"$work/purge.log" 2>&1 || fail 'the packages cannot be removed'
 left=$(find "$root/usr" -path '*robdef*' | head)
 [ -z "$left" ] || fail "this is left after removing: $left"
 echo 'debian_root: passed'
