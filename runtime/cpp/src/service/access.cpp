@@ -167,8 +167,7 @@ void ServerEndpoint::end_what_is_not_allowed(ServiceHost& host, bool is_all) {
 
 void ServerEndpoint::answer_session_operation(const Question& question) {
   const std::string_view operation = question.entry.member;
-  if (LockKeeper* const keeper = host_->lock_keeper(); keeper && ask_keeper(*keeper, question))
-    return;
+  if (auto* const keeper = host_->lock_keeper(); keeper && ask_keeper(*keeper, question)) return;
   if (operation.starts_with("Monitor")) {
     answer_monitor_operation(question);
     return;
