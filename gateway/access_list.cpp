@@ -99,7 +99,8 @@ class Collector {
     if ((rule.access & (locking | calling)) != 0) rights.publish.insert(topic(Verb::session, ""));
     for (const std::string& prefix : prefixes) rights.publish.insert(topic(Verb::object, prefix));
     rights.receive.insert({node_topic(address.site, address.node) + "/$life", service + "/$life",
-                           service + "/$streams", service + "/$def/#", reply_topic(user, "#")});
+                           service + "/$streams", service + "/$attributes", service + "/$closed",
+                           service + "/$def/#", reply_topic(user, "#")});
   }
 
   /// Values, packets and events, which the gateway publishes for all users or not at all.

@@ -37,10 +37,10 @@ TEST(GatewayAccessList, HasWhatAllUsersMay) {
   EXPECT_THAT(list.everybody.publish,
               ElementsAre("rr/hall/r1/arm/$confirm/%u/pose", "rr/hall/r1/arm/$get/%u/pose",
                           "rr/hall/r1/arm/$stream/%u/pose"));
-  EXPECT_THAT(
-      list.everybody.receive,
-      ElementsAre("rr/$reply/%u/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
-                  "rr/hall/r1/arm/$life", "rr/hall/r1/arm/$streams", "rr/hall/r1/arm/pose"));
+  EXPECT_THAT(list.everybody.receive,
+              ElementsAre("rr/$reply/%u/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$attributes",
+                          "rr/hall/r1/arm/$closed", "rr/hall/r1/arm/$def/#", "rr/hall/r1/arm/$life",
+                          "rr/hall/r1/arm/$streams", "rr/hall/r1/arm/pose"));
   ASSERT_EQ(list.users.size(), 1U);
   EXPECT_THAT(list.users.at("robot1").publish, ElementsAre("rr/$reply/#", "rr/hall/r1/#"));
   EXPECT_THAT(list.users.at("robot1").receive, Contains("rr/hall/r1/arm/$get/#"));
@@ -61,8 +61,9 @@ TEST(GatewayAccessList, HasWhatSingleUsersMay) {
           "rr/hall/r1/arm/$poke/alice/+/axis[2]/+", "rr/hall/r1/arm/$send/alice/+/axis[2]/+",
           "rr/hall/r1/arm/$session/alice", "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
   EXPECT_THAT(alice.receive,
-              ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
-                          "rr/hall/r1/arm/$life", "rr/hall/r1/arm/$streams"));
+              ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$attributes",
+                          "rr/hall/r1/arm/$closed", "rr/hall/r1/arm/$def/#", "rr/hall/r1/arm/$life",
+                          "rr/hall/r1/arm/$streams"));
   EXPECT_THAT(list.users.at("robot1").publish, ElementsAre("rr/$reply/alice/#", "rr/hall/r1/#"));
 }
 
@@ -93,6 +94,8 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic write rr/hall/r1/arm/$session/alice\n"
             "topic read rr/$reply/alice/#\n"
             "topic read rr/hall/r1/$life\n"
+            "topic read rr/hall/r1/arm/$attributes\n"
+            "topic read rr/hall/r1/arm/$closed\n"
             "topic read rr/hall/r1/arm/$def/#\n"
             "topic read rr/hall/r1/arm/$life\n"
             "topic read rr/hall/r1/arm/$streams\n"
@@ -136,6 +139,8 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "pattern write rr/hall/r2/arm/$stream/%u/+\n"
             "pattern read rr/$reply/%u/#\n"
             "pattern read rr/hall/r2/$life\n"
+            "pattern read rr/hall/r2/arm/$attributes\n"
+            "pattern read rr/hall/r2/arm/$closed\n"
             "pattern read rr/hall/r2/arm/$def/#\n"
             "pattern read rr/hall/r2/arm/$life\n"
             "pattern read rr/hall/r2/arm/$streams\n"
@@ -168,6 +173,8 @@ authorization {
       publish: [
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.$life",
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.$life.$beat",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$attributes",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$closed",
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$def",
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$def.>",
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$life",
@@ -184,6 +191,8 @@ authorization {
         "rr.$reply.eve.>",
         "rr.hall.r1.$life",
         "rr.hall.r1.$life.$beat",
+        "rr.hall.r1.arm.$attributes",
+        "rr.hall.r1.arm.$closed",
         "rr.hall.r1.arm.$def",
         "rr.hall.r1.arm.$def.>",
         "rr.hall.r1.arm.$life",

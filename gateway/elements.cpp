@@ -5,6 +5,7 @@
 
 #include "gateway/properties.hpp"
 #include "rr/codec.hpp"
+#include "rr/container_type.hpp"
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
 #include "rr/type_of.hpp"
@@ -17,25 +18,26 @@ namespace {
   throw Error(decoder.code(), decoder.message());
 }
 
-// Parameters of errors are of no named types: whoever gets them needs no definition.
-Bytes parameter_element(const VarValue& parameter) {
-  if (parameter.is_null()) return {};
+// Of no named types: whoever gets it needs no definition.
+template <class T>
+Bytes plain_element(const char* name, const T& value) {
   Writer writer;
   writer.reset(MessageVersion::v4);
-  type_of<VarValue>.write(writer, "errorparam", &parameter);
+  type_of<T>.write(writer, name, &value);
   return writer.failed() ? Bytes() : writer.copy();
 }
 
-// Null for bytes that are none.
-VarValue parameter_of(const Bytes& bytes) {
-  VarValue parameter;
-  if (bytes.empty()) return parameter;
+// Nothing for bytes that are none.
+template <class T>
+T plain_value(const Bytes& bytes) {
+  T value{};
+  if (bytes.empty()) return value;
   Decoder decoder(MessageVersion::v4);
   if (!check_elements(decoder, bytes, 1, Limits())) return {};
   ElementReader reader(decoder, bytes, 1);
   Element element;
-  if (!reader.next(element) || !type_of<VarValue>.read(decoder, element, &parameter)) return {};
-  return parameter;
+  if (!reader.next(element) || !type_of<T>.read(decoder, element, &value)) return {};
+  return value;
 }
 
 }  // namespace
@@ -53,6 +55,14 @@ dynamic::Value decode_element(const dynamic::Definitions& definitions,
   if (type.kind() == dynamic::Kind::null) return {};
   const std::vector<dynamic::ParameterDescription> one{{"value", type}};
   return decode_arguments(definitions, one, bytes).at(0);
+}
+
+Bytes encode_attributes(const std::map<std::string, VarValue>& attributes) {
+  return attributes.empty() ? Bytes() : plain_element("attributes", attributes);
+}
+
+std::map<std::string, VarValue> decode_attributes(const Bytes& bytes) {
+  return plain_value<std::map<std::string, VarValue>>(bytes);
 }
 
 Bytes encode_arguments(const std::vector<dynamic::ParameterDescription>& parameters,
@@ -115,7 +125,9 @@ void set_error(Message& answer, const std::exception_ptr& error, std::string_vie
     answer.properties.emplace_back("error-message", found.message());
     answer.properties.emplace_back("error-subname", found.subname());
     answer.properties.emplace_back("error-at", at);
-    answer.payload = parameter_element(found.parameter());
+    if (!found.parameter().is_null()) {
+      answer.payload = plain_element("errorparam", found.parameter());
+    }
   };
   try {
     std::rethrow_exception(error);
@@ -132,9 +144,9 @@ std::exception_ptr error_of(const Message& answer) {
   const auto text = [&](std::string_view name) {
     return std::string(answer.find(name).value_or(std::string_view()));
   };
-  return std::make_exception_ptr(Error(static_cast<ErrorCode>(static_cast<std::uint16_t>(*code)),
-                                       text("error-name"), text("error-message"),
-                                       text("error-subname"), parameter_of(answer.payload)));
+  return std::make_exception_ptr(
+      Error(static_cast<ErrorCode>(static_cast<std::uint16_t>(*code)), text("error-name"),
+            text("error-message"), text("error-subname"), plain_value<VarValue>(answer.payload)));
 }
 
 }  // namespace rr::gateway

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "gateway/carrier.hpp"
 #include "rr/dynamic.hpp"
 #include "rr/error.hpp"
+#include "rr/varvalue.hpp"
 
 /// Values as the elements of message format 4, which payloads consist of.
 namespace rr::gateway {
@@ -19,6 +21,11 @@ Bytes encode_element(const dynamic::ValueType& type, const dynamic::Value& value
 /// The reverse. Throws rr::Error for bytes that are no such element.
 dynamic::Value decode_element(const dynamic::Definitions& definitions,
                               const dynamic::ValueType& type, const Bytes& bytes);
+
+/// The element of a service's attributes; empty when it has none, or one of a named type.
+Bytes encode_attributes(const std::map<std::string, VarValue>& attributes);
+/// The reverse; none for bytes that are no such element.
+std::map<std::string, VarValue> decode_attributes(const Bytes& bytes);
 
 /// Elements of arguments, back to back, each called as its parameter. Throws as above.
 Bytes encode_arguments(const std::vector<dynamic::ParameterDescription>& parameters,

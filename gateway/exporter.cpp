@@ -75,6 +75,13 @@ void ServiceExporter::connect(Node& node) {
       if (const Self exporter = weak.lock()) exporter->robot_disconnected(reason);
     });
   };
+  listener.released = [weak](const std::string& path) {
+    const Self self = weak.lock();
+    if (!self) return;
+    self->shared_.worker.post([weak, path] {
+      if (const Self exporter = weak.lock()) exporter->object_released(path);
+    });
+  };
   session_ = RobotSession::open(node, options_.url, options_.login, std::move(listener));
 }
 
@@ -121,6 +128,7 @@ void ServiceExporter::tick() {
   sessions_.tick(now);
   generators_.end_idle(now, left_idle);
   endpoints_.close_idle(now, left_idle);
+  attach_closed(now);
   for (auto& [topic, stream] : streams_) {
     stream.writer->flush(now);
     if (now - stream.ticked < stream_tick) continue;

@@ -325,6 +325,12 @@ void FarService::serve_event(const dynamic::ServedObject& object, const std::str
 
 void FarService::add_stream(const std::string& path, const std::string& member,
                             StreamReader::Sink sink, Function<bool()> has_room) {
+  // The object was released and is found anew: what its clients have got is not given again.
+  const auto known = streams_.find(member_topic(address_, path, member));
+  if (known != streams_.end()) {
+    known->second->redirect(std::move(sink), std::move(has_room));
+    return;
+  }
   auto stream = std::make_unique<FarStream>(address_, path, member, shared_.reader, std::move(sink),
                                             std::move(has_room));
   shared_.carrier.subscribe(stream->topic());

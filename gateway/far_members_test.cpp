@@ -175,7 +175,8 @@ TEST_F(FarPipes, PacketsReachTheRobotOnceAndInOrderOverABadLink) {
     if (i == 200) broker.cut();
   }
   commands.close();
-  ASSERT_TRUE(rig.robot.commands.wait_for(501));
+  ASSERT_TRUE(rig.robot.commands.wait_for(501)) << rig.robot.commands.items().size() << " arrived\n"
+                                                << ::testing::PrintToString(rig.log.items());
   const auto got = rig.robot.commands.items();
   ASSERT_EQ(got.size(), 501U);
   for (std::size_t i = 0; i < 500; ++i) ASSERT_EQ(got[i], std::to_string(i));

@@ -3,12 +3,17 @@
 
 #include <utility>
 
+#include "gateway/elements.hpp"
 #include "gateway/far_locks.hpp"
 #include "gateway/properties.hpp"
 #include "rr/error.hpp"
 
 namespace rr::gateway {
 namespace {
+
+/// For attributes that a robot's gateway has published: a broker may deliver them after the
+/// definition, or not at all.
+constexpr std::chrono::seconds longest_wait{2};
 
 std::vector<std::string> names_in(std::string_view list) {
   std::vector<std::string> names;
@@ -34,6 +39,8 @@ void FarService::start() {
       [weak = Weak(shared_from_this())](std::uint32_t client, const std::string& reason) {
         if (const Self self = weak.lock()) self->drop(client, reason);
       });
+  shared_.carrier.subscribe(topic_ + "/$closed");
+  shared_.carrier.subscribe(topic_ + "/$attributes");
   shared_.carrier.subscribe(topic_ + "/$def/#");
   shared_.carrier.subscribe(topic_ + "/$life");
   shared_.carrier.subscribe(node_topic(address_.site, address_.node) + "/$life");
@@ -62,6 +69,10 @@ bool FarService::take(const Message& message) {
   if (message.topic == shared_.reader.reply_topic) return take_reply(message);
   if (message.topic == topic_ + "/$life") {
     take_life(message);
+  } else if (message.topic == topic_ + "/$attributes") {
+    take_attributes(message);
+  } else if (message.topic == topic_ + "/$closed") {
+    for (const Closed& closed : closed_.take(message)) take_closed(closed);
   } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
     const std::string before = std::exchange(gateway_life_, text_of(message.payload));
     // Requests that it did not get are not waited for.
@@ -92,14 +103,27 @@ void FarService::take_life(const Message& message) {
 void FarService::take_definition(const Message& message, std::string_view rest) {
   if (rest.empty()) {
     definition_ = message;
+    defined_ = std::chrono::steady_clock::now();
   } else {
     texts_[std::string(rest.substr(1))] = text_of(message.payload);
   }
   offer_when_complete();
 }
 
+void FarService::take_attributes(const Message& message) {
+  attributes_ = decode_attributes(message.payload);
+  if (service_) {
+    (*service_)->set_attributes(*attributes_);
+  } else {
+    offer_when_complete();
+  }
+}
+
 void FarService::offer_when_complete() {
   if (!definition_) return;
+  const bool has_attributes = definition_->find("attributes") == "1";
+  const bool is_late = std::chrono::steady_clock::now() - defined_ >= longest_wait;
+  if (has_attributes && !attributes_ && !is_late) return;
   std::vector<std::string> texts;
   std::string all;
   for (const std::string& name : names_in(definition_->find("definitions").value_or(""))) {
@@ -134,6 +158,7 @@ void FarService::offer(const std::vector<std::string>& texts) {
 
 ServiceOptions FarService::service_options() const {
   ServiceOptions options;
+  options.attributes = attributes_.value_or(std::map<std::string, VarValue>());
   // From the first request on: a client may connect as soon as the service is registered.
   options.lock_keeper = std::make_shared<FarLocks>(sessions_, address_);
   options.on_client_connected = [sessions = sessions_](const ServiceClient& client) {
@@ -158,6 +183,7 @@ void FarService::reconnected() {
 void FarService::tick() {
   for (const auto& [topic, stream] : streams_) stream->tick(shared_.outbox);
   sessions_->tick(FarSessions::Clock::now());
+  if (offered_.empty()) offer_when_complete();
 }
 
 std::string FarService::trouble() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/closed_list.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/far_calls.hpp"
 #include "gateway/far_packets.hpp"
@@ -71,6 +73,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
   bool take_reply(const Message& message);
   void take_life(const Message& message);
   void take_definition(const Message& message, std::string_view rest);
+  void take_attributes(const Message& message);
   void offer_when_complete();
   void offer(const std::vector<std::string>& texts);
   [[nodiscard]] ServiceOptions service_options() const;
@@ -97,6 +100,10 @@ class FarService : public std::enable_shared_from_this<FarService> {
                     const dynamic::MemberDescription& member);
   void serve_event(const dynamic::ServedObject& object, const std::string& path,
                    const dynamic::MemberDescription& member);
+  // far_closings.cpp
+  void take_closed(const Closed& closed);
+  void release(const std::string& path);
+  void release_all();
   // far_callbacks.cpp
   [[nodiscard]] bool has_callbacks() const;
   bool take_callback(const Message& message, std::string_view id);
@@ -109,8 +116,11 @@ class FarService : public std::enable_shared_from_this<FarService> {
   const std::string name_;
   const std::string topic_;
   Shared shared_;
-  std::shared_ptr<FarSessions> sessions_;     // from start() on
-  std::optional<Message> definition_;         // `$def` itself
+  std::shared_ptr<FarSessions> sessions_;            // from start() on
+  std::optional<Message> definition_;                // `$def` itself
+  std::chrono::steady_clock::time_point defined_{};  // when it came
+  std::optional<std::map<std::string, VarValue>> attributes_;
+  ClosedListReader closed_;
   std::map<std::string, std::string> texts_;  // of definitions, by name
   std::string offered_;                       // the texts that the service was made of
   std::optional<dynamic::Definitions> definitions_;

@@ -23,6 +23,11 @@ FarStream::FarStream(const ServiceAddress& address, const std::string& path,
       has_room_(std::move(has_room)),
       reader_(std::move(sink), {}) {}
 
+void FarStream::redirect(StreamReader::Sink sink, Function<bool()> has_room) {
+  reader_.set_sink(std::move(sink));
+  has_room_ = std::move(has_room);
+}
+
 void FarStream::receive(Message message, Outbox& outbox) {
   if (!has_room_()) return;
   reader_.receive(std::move(message), Clock::now());

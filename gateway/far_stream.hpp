@@ -26,6 +26,8 @@ class FarStream {
   FarStream(const ServiceAddress& address, const std::string& path, const std::string& member,
             Reader reader, StreamReader::Sink sink, Function<bool()> has_room);
 
+  /// Records go elsewhere from now on.
+  void redirect(StreamReader::Sink sink, Function<bool()> has_room);
   /// Where all readers listen; answers have it as property `topic`.
   [[nodiscard]] const std::string& topic() const { return topic_; }
   /// A message of the stream.

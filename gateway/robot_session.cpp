@@ -69,6 +69,13 @@ std::shared_ptr<RobotSession> RobotSession::open(Node& node, const std::string& 
     options.username = user.name;
     options.credentials["password"] = VarValue(user.password);
   }
+  if (listener.released) {
+    options.on_path_released = [released = listener.released](const std::string& path) {
+      // It begins with the service's name.
+      const std::size_t dot = path.find('.');
+      if (dot != std::string::npos) released(path.substr(dot + 1));
+    };
+  }
   session->subscription_ = dynamic::subscribe(node, url, std::move(options));
   session->listen(std::move(listener));
   return session;
@@ -99,6 +106,11 @@ bool RobotSession::is_connected(std::optional<Error>& reason) const {
   if (subscription_.try_default_client<Stub>()) return true;
   reason = subscription_.last_error();
   return false;
+}
+
+std::map<std::string, VarValue> RobotSession::attributes() const {
+  const auto services = subscription_.services();
+  return services.empty() ? std::map<std::string, VarValue>() : services.front().attributes;
 }
 
 dynamic::Object RobotSession::root() const {

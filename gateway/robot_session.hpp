@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +32,8 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
     Function<void(const dynamic::Object& root)> connected;
     /// Also of each attempt to connect that has failed.
     Function<void(const std::string& reason)> disconnected;
+    /// The object at a path below the root was released.
+    Function<void(const std::string& path)> released;
   };
 
   /// A user without a name does not log in. Does not wait.
@@ -46,6 +49,8 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
   /// Whether find() can succeed. False, with the reason, when the robot is not connected; without
   /// a reason while the first attempt goes on.
   [[nodiscard]] bool is_connected(std::optional<Error>& reason) const;
+  /// Attributes of the service, as it gave them when it was connected; none when it is not.
+  [[nodiscard]] std::map<std::string, VarValue> attributes() const;
 
  private:
   RobotSession() = default;

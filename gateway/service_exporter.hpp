@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gateway/call_window.hpp"
+#include "gateway/closed_list.hpp"
 #include "gateway/exported_callbacks.hpp"
 #include "gateway/exported_endpoints.hpp"
 #include "gateway/exported_generators.hpp"
@@ -69,8 +70,19 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   using Self = std::shared_ptr<ServiceExporter>;
   using Weak = std::weak_ptr<ServiceExporter>;
 
-  /// Kept by whatever connects members; the service is announced when the last has dropped it.
-  using Attaching = std::shared_ptr<void>;
+  /// How members of an object are connected.
+  struct Attaching {
+    /// Kept by whatever connects members for the first time; the service is announced when the last
+    /// has dropped it.
+    std::shared_ptr<void> all{};
+    std::set<std::string> members{};  // only these; all for none
+  };
+  /// Members of an object that were closed, to be connected again.
+  struct ClosedMembers {
+    std::set<std::string> members{};
+    std::chrono::steady_clock::time_point due{};
+    bool is_released = false;  // the object: its wires end by that
+  };
 
   // service_streams.cpp
   void robot_connected(const dynamic::Object& root);
@@ -79,7 +91,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void publish_life(std::string_view life, const std::string& reason);
   void publish_status();
   void retain(Message message);
-  Attaching announce_when_attached();
+  std::shared_ptr<void> announce_when_attached();
+  [[nodiscard]] std::set<std::string> attached_paths() const;
   void attach_path(const std::string& path, const Attaching& attaching);
   void attach_members(const std::string& path, const dynamic::Object& object,
                       const Attaching& attaching);
@@ -100,6 +113,16 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void append(StreamExport& stream, const std::vector<dynamic::ParameterDescription>& parameters,
               const dynamic::List& values);
   void append_broken(StreamExport& stream);
+
+  // service_closings.cpp
+  Function<void(std::exception_ptr)> when_closed(const std::string& path,
+                                                 const std::string& member);
+  void member_closed(const std::string& path, const std::string& member);
+  void ask_for(const std::string& path, const std::string& wire);
+  void object_released(const std::string& released);
+  void tell_closed(Closed closed);
+  ClosedMembers& attach_later(const std::string& path);
+  void attach_closed(std::chrono::steady_clock::time_point now);
 
   // service_requests.cpp
   void handle(const RequestTopic& request, const Message& message);
@@ -154,9 +177,15 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   ExportedEndpoints endpoints_;
   std::string trouble_;           // why the robot is not connected, as was reported
   std::uint64_t connection_ = 0;  // counts connections to the robot
-  // Their handlers last as long. Kept until the robot is connected again: what it had sent before
-  // is still on its way.
-  std::vector<dynamic::Object> attached_;
+  dynamic::Object root_;          // of this connection
+  // By path. Their handlers last as long. Kept until the robot is connected again: what it had sent
+  // before is still on its way.
+  std::map<std::string, dynamic::Object> attached_;
+  std::set<std::string> attached_topics_;                // of members that are or will be connected
+  std::map<std::string, ClosedMembers> closed_members_;  // by path
+  std::set<std::pair<std::string, std::string>> unsure_;  // wires that have ended: path, member
+  ClosedList closed_;
+  bool closed_is_told_ = true;
 };
 
 /// Nanoseconds since 1970, UTC.

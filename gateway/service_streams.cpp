@@ -29,23 +29,32 @@ void ServiceExporter::robot_connected(const dynamic::Object& root) {
   shared_.worker.set_bounded(false);
   attached_.clear();
   shared_.worker.set_bounded(true);
+  root_ = root;
+  attached_topics_.clear();
+  closed_members_.clear();
+  unsure_.clear();
   try {
     publish_definitions(root);
   } catch (const Error& error) {
     shared_.log(LogLevel::error, options_.name + ": " + error.what());
     return;
   }
+  retain(closed_.message(service_topic(address_) + "/$closed"));
+  const auto attaching = announce_when_attached();
+  for (const std::string& path : attached_paths()) attach_path(path, {.all = attaching});
+}
+
+std::set<std::string> ServiceExporter::attached_paths() const {
   std::set<std::string> paths;
   for (const ExportRule& rule : options_.rules) {
     const bool is_literal = rule.path.find('*') == std::string::npos;
     if (is_literal && (rule.access & reading) != 0 && rule.users.empty()) paths.insert(rule.path);
   }
-  const Attaching attaching = announce_when_attached();
-  for (const std::string& path : paths) attach_path(path, attaching);
+  return paths;
 }
 
 // Readers of `up` may rely on it: packets and events of the robot are logged from now on.
-ServiceExporter::Attaching ServiceExporter::announce_when_attached() {
+std::shared_ptr<void> ServiceExporter::announce_when_attached() {
   const auto announce = [weak = Weak(shared_from_this()), connection = connection_](void*) {
     const Self self = weak.lock();
     if (!self) return;
@@ -79,8 +88,11 @@ void ServiceExporter::publish_definitions(const dynamic::Object& root) {
     retain({topic + "/" + name, bytes_of(definitions.text(name))});
   }
   const std::string type = root.type_name();
+  Bytes attributes = encode_attributes(session_->attributes());
   Message message{topic, bytes_of(definitions.text(type.substr(0, type.rfind('.'))))};
-  message.properties = {{"object", type}, {"definitions", names}};
+  message.properties = {
+      {"object", type}, {"definitions", names}, {"attributes", attributes.empty() ? "0" : "1"}};
+  retain({service_topic(address_) + "/$attributes", std::move(attributes)});
   retain(std::move(message));
 }
 
@@ -112,29 +124,37 @@ void ServiceExporter::broker_connected() {
 }
 
 void ServiceExporter::attach_path(const std::string& path, const Attaching& attaching) {
-  session_->find(path, [weak = Weak(shared_from_this()), path, attaching, connection = connection_](
-                           const std::exception_ptr& error, const dynamic::Object& object) {
-    const Self self = weak.lock();
-    if (!self) return;
-    self->shared_.worker.post([weak, path, attaching, error, object, connection] {
-      const Self exporter = weak.lock();
-      if (!exporter || exporter->connection_ != connection) return;
-      if (!error) {
-        exporter->attach_members(path, object, attaching);
-      } else {
-        exporter->shared_.log(LogLevel::warning, exporter->options_.name + ": `" + path +
-                                                     "` of the export file is not there");
-      }
-    });
-  });
+  find_object(root_, path,
+              [weak = Weak(shared_from_this()), path, attaching, connection = connection_](
+                  const std::exception_ptr& error, const dynamic::Object& object) {
+                const Self self = weak.lock();
+                if (!self) return;
+                self->shared_.worker.post([weak, path, attaching, error, object, connection] {
+                  const Self exporter = weak.lock();
+                  if (!exporter || exporter->connection_ != connection) return;
+                  if (!error) {
+                    exporter->attach_members(path, object, attaching);
+                  } else {
+                    exporter->shared_.log(LogLevel::warning,
+                                          exporter->options_.name + ": `" + path +
+                                              "` of the export file is not there");
+                  }
+                });
+              });
 }
 
 void ServiceExporter::attach_members(const std::string& path, const dynamic::Object& object,
                                      const Attaching& attaching) {
-  attached_.push_back(object);
+  shared_.worker.set_bounded(false);  // as in robot_connected()
+  attached_[path] = object;
+  shared_.worker.set_bounded(true);
   for (const dynamic::MemberDescription& member : object.members()) {
+    if (!attaching.members.empty() && !attaching.members.contains(member.name)) continue;
     const ExportRule* const rule = find_rule(options_, "", path, member.name, reading);
     if (rule == nullptr || (member.access & writeonly) != 0) continue;
+    const bool is_stream = member.kind == MemberKind::pipe || member.kind == MemberKind::event;
+    if (member.kind != MemberKind::wire && !is_stream) continue;
+    if (!attached_topics_.insert(member_topic(address_, path, member.name)).second) continue;
     if (member.kind == MemberKind::wire) attach_wire(path, object, member, *rule, attaching);
     if (member.kind == MemberKind::pipe) attach_pipe(path, object, member, attaching);
     if (member.kind == MemberKind::event) attach_event(path, object, member);
@@ -147,13 +167,18 @@ void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object
   const auto wire = shared_.wires.add(
       {member_topic(address_, path, member.name), member.type, rule.period, rule.lifespan});
   object.wire(member.name)
-      .async_connect([weak = Weak(shared_from_this()), wire, attaching](
-                         const std::exception_ptr& error, dynamic::WireConnection end) {
-        if (error) return;
+      .async_connect([weak = Weak(shared_from_this()), wire, attaching,
+                      closed = when_closed(path, member.name)](const std::exception_ptr& error,
+                                                               dynamic::WireConnection end) {
+        if (error) {
+          closed(error);
+          return;
+        }
         end.on_in([weak, wire](const dynamic::Value& value, const TimeSpec& time) {
              if (const Self self = weak.lock()) self->take_value(*wire, value, time);
            })
             .detach();
+        end.on_closed([closed] { closed(nullptr); });
       });
 }
 
@@ -173,13 +198,18 @@ void ServiceExporter::attach_pipe(const std::string& path, const dynamic::Object
   if (stream == nullptr) return;
   const std::vector<dynamic::ParameterDescription> one{{"value", member.type}};
   object.pipe(member.name)
-      .async_connect([weak = Weak(shared_from_this()), stream, one, attaching](
-                         const std::exception_ptr& error, dynamic::PipeEndpoint end) {
-        if (error) return;
+      .async_connect([weak = Weak(shared_from_this()), stream, one, attaching,
+                      closed = when_closed(path, member.name)](const std::exception_ptr& error,
+                                                               dynamic::PipeEndpoint end) {
+        if (error) {
+          closed(error);
+          return;
+        }
         end.on_packet([weak, stream, one](const dynamic::Value& packet) {
              if (const Self self = weak.lock()) self->take_record(stream, one, {packet});
            })
             .detach();
+        end.on_closed([closed] { closed(nullptr); });
       });
 }
 

@@ -49,6 +49,8 @@ class StreamReader {
   /// The sink is called in receive() only.
   StreamReader(Sink sink, const Options& options) : sink_(std::move(sink)), options_(options) {}
 
+  /// What records become from now on. Not in a function of the sink.
+  void set_sink(Sink sink) { sink_ = std::move(sink); }
   /// A message of the stream, in any order, any number of times. Others are ignored.
   void receive(Message message, Clock::time_point now);
   /// What to ask for now; nothing for nothing. To be called after receive(), and some times in

@@ -33,6 +33,7 @@ object Tool
   property double width
   function void open()
   event opened(int32 count)
+  wire double grip [readonly]
 end
 
 object Bench
@@ -99,11 +100,14 @@ class BenchService {
     port_ = node_.listen_tcp(port);
     ServiceOptions options;
     options.users = std::make_shared<TwoUsers>();
+    options.attributes = {{"place", VarValue(std::string("bench 4"))}};
     service_.emplace(dynamic::register_service(node_, "bench", bench_, options));
   }
 
   /// How many clients are connected, gateways included.
   [[nodiscard]] std::size_t client_count() const { return (*service_)->clients().size(); }
+  /// The object at a path is released: `tools[left%20hand]`.
+  void release(const std::string& path) { (*service_)->release_path("bench." + path); }
   /// Ends the service.
   void close() { (*service_)->close(); }
   [[nodiscard]] std::uint16_t port() const { return port_; }

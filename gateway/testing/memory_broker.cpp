@@ -20,6 +20,7 @@ struct MemoryBroker::Client {
   Message life;
   std::vector<std::string> filters;
   bool is_connected = false;
+  bool is_ending = false;  // the handler does not know yet that the connection has ended
   bool is_stopped = false;
   bool is_called = false;   // its handler runs now
   bool wants_room = false;  // a message was not taken
@@ -177,10 +178,12 @@ void MemoryBroker::disconnect(std::unique_lock<std::mutex>& lock, const std::set
   const auto clients = clients_;
   for (const auto& client : clients) {
     if (!traffic.contains(client->traffic) || !std::exchange(client->is_connected, false)) continue;
+    client->is_ending = true;
     if (publishes_life) route(client->life);
     call(lock, *client, [](CarrierHandler& handler) {
       handler.on_disconnected("the test has ended the connection");
     });
+    client->is_ending = false;
   }
 }
 
@@ -227,7 +230,8 @@ void MemoryBroker::enqueue(const std::shared_ptr<Client>& client, Message messag
 void MemoryBroker::connect_all(std::unique_lock<std::mutex>& lock) {
   const auto clients = clients_;
   for (const auto& client : clients) {
-    if (!is_up_ || down_.contains(client->traffic) || client->is_connected || client->is_stopped ||
+    const bool is_down = !is_up_ || down_.contains(client->traffic);
+    if (is_down || client->is_connected || client->is_ending || client->is_stopped ||
         client->is_called)
       continue;
     client->is_connected = true;

@@ -76,12 +76,12 @@ class Rig {
   }
 
   /// Connects as soon as the service is offered.
-  dynamic::Client connect() {
+  dynamic::Client connect(const ConnectOptions& options = {}) {
     dynamic::Client client;
     const std::string url = "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
     const bool is_connected = comes_true([&] {
       try {
-        client = dynamic::connect(client_node_, url);
+        client = dynamic::connect(client_node_, url, options);
         return true;
       } catch (const Error&) {
         return false;

@@ -1,43 +1,58 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Packs the runtime, lets a project use the package from a folder, without a network, and looks at what its builds do.
-#   package_test.sh ROBDEF NATIVE_DIR WORK [WINDOWS_DIR]
-# With a folder of robdef_c.dll and robdef.exe these are in the package, too.
+#   package_test.sh [--make|--use] ROBDEF NATIVE_DIR WORK [WINDOWS_DIR]
+# With a folder of robdef_c.dll and robdef.exe these are in the package, too. With --make it only packs and looks at the
+# package, with --use it uses the one of an earlier --make.
 set -euo pipefail
+mode=
+case $1 in --make | --use)
+  mode=$1
+  shift
+  ;;
+esac
 robdef=$1 native=$2 work=$3 windows=${4:-}
 here=$(cd "$(dirname "$0")" && pwd)
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 version=$("$here/../../tools/version")
 fail() { echo "package_test: $*" >&2; exit 1; }
 
-rm -rf "$work"
-mkdir -p "$work/feed"
-# .NET 8 needs its reference pack, which not every source of packages has.
-frameworks='net8.0;net10.0'
-if ! dotnet restore "$here/Robdef.Runtime" --artifacts-path "$work/runtime" "-p:RobdefFrameworks=\"$frameworks\"" >"$work/restore.log" 2>&1; then
-  cat "$work/restore.log" >&2
-  [ "${CI:-}" != true ] || fail "no reference pack of .NET 8, and CI=true leaves nothing out"
-  echo 'package_test: no reference pack of .NET 8: for .NET 10 alone' >&2
-  frameworks=net10.0
-fi
-dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
-  "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
-  -p:WindowsDir="$windows" -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
+# make_package: into $work/feed, for $frameworks.
+make_package() {
+  rm -rf "$work"
+  mkdir -p "$work/feed"
+  # .NET 8 needs its reference pack, which not every source of packages has.
+  frameworks='net8.0;net10.0'
+  if ! dotnet restore "$here/Robdef.Runtime" --artifacts-path "$work/runtime" "-p:RobdefFrameworks=\"$frameworks\"" >"$work/restore.log" 2>&1; then
+    cat "$work/restore.log" >&2
+    [ "${CI:-}" != true ] || fail "no reference pack of .NET 8, and CI=true leaves nothing out"
+    echo 'package_test: no reference pack of .NET 8: for .NET 10 alone' >&2
+    frameworks=net10.0
+  fi
+  dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
+    "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
+    -p:WindowsDir="$windows" -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
 
-dotnet pack "$here/Robdef.Hosting" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
-  "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef"
-python3 -m zipfile -e "$work/feed/Robdef.Hosting.$version.nupkg" "$work/unpacked-hosting"
-grep -q "<dependency id=\"Robdef.Runtime\" version=\"$version\"" "$work/unpacked-hosting/Robdef.Hosting.nuspec" ||
-  fail "the package for hosts does not want the runtime"
+  dotnet pack "$here/Robdef.Hosting" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
+    "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef"
+  python3 -m zipfile -e "$work/feed/Robdef.Hosting.$version.nupkg" "$work/unpacked-hosting"
+  grep -q "<dependency id=\"Robdef.Runtime\" version=\"$version\"" "$work/unpacked-hosting/Robdef.Hosting.nuspec" ||
+    fail "the package for hosts does not want the runtime"
 
-[ -f "$work/feed/Robdef.Runtime.$version.snupkg" ] || fail "there are no symbols"
-python3 -m zipfile -e "$work/feed/Robdef.Runtime.$version.nupkg" "$work/unpacked"
-for line in '<projectUrl>https://example.org/robdef</projectUrl>' '<icon>icon.png</icon>' '<readme>README.md</readme>' \
-  '<repository type="git" url="https://example.org/robdef.git"' 'robotics'; do
-  grep -q "$line" "$work/unpacked/Robdef.Runtime.nuspec" || fail "the package does not say $line"
-done
-! ldd "$robdef" | grep -q libfmt || fail "the compiler needs a shared libfmt"
+  [ -f "$work/feed/Robdef.Runtime.$version.snupkg" ] || fail "there are no symbols"
+  python3 -m zipfile -e "$work/feed/Robdef.Runtime.$version.nupkg" "$work/unpacked"
+  for line in '<projectUrl>https://example.org/robdef</projectUrl>' '<icon>icon.png</icon>' '<readme>README.md</readme>' \
+    '<repository type="git" url="https://example.org/robdef.git"' 'robotics'; do
+    grep -q "$line" "$work/unpacked/Robdef.Runtime.nuspec" || fail "the package does not say $line"
+  done
+  ! ldd "$robdef" | grep -q libfmt || fail "the compiler needs a shared libfmt"
+  echo "$frameworks" >"$work/frameworks"
+}
 
+[ "$mode" = --use ] || make_package
+[ "$mode" != --make ] || exit 0
+frameworks=$(cat "$work/frameworks")
+rm -rf "$work/sample" "$work/sample8" "$work/packages"
 cp -r "$here/package_test" "$work/sample"
 cd "$work/sample"
 cat >nuget.config <<CONFIG

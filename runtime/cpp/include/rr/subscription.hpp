@@ -51,6 +51,8 @@ struct SubscriptionOptions {
 
   /// Which services are wanted.
   ServiceFilter filter{};
+  /// As in ConnectOptions, of each client.
+  Function<void(const std::string& path)> on_path_released{};
   /// Internal: makes the reader of each session (ConnectOptions::definition_reader).
   Function<std::shared_ptr<client::DefinitionReader>()> make_definition_reader{};
 };
@@ -68,6 +70,8 @@ struct SubscribedService {
   std::optional<Error> last_error{};
   /// Attempts that have failed since it was last connected.
   std::size_t failures = 0;
+  /// As the service gave them to the client that is connected; empty when there is none.
+  std::map<std::string, VarValue> attributes{};
 };
 
 /// Keeps a connection to each of some services, and connects again when one is lost. Made by

@@ -73,6 +73,29 @@ TEST(ServiceSubscriptions, GiveTheDefaultClientOnceConnected) {
             ErrorCode::service_error);
 }
 
+TEST(ServiceSubscriptions, TellWhichObjectsAreReleased) {
+  Server server("counter", counter("a"));
+  std::promise<std::string> released;
+  SubscriptionOptions options;
+  options.on_path_released = [&](const std::string& path) { released.set_value(path); };
+  Node node;
+  auto subscription = node.subscribe(server.url(), options);
+  subscription.wait_default_client<CounterStub>(20s)->get_by_name("left");
+  server.service()->release_path("counter.by_name[left]");
+  EXPECT_EQ(released.get_future().get(), "counter.by_name[left]");
+}
+
+TEST(ServiceSubscriptions, HaveTheAttributesOfTheirServices) {
+  Server server("counter", counter("a"), {},
+                {.attributes = {{"place", VarValue(std::string("roof"))}}});
+  Node node;
+  auto subscription = node.subscribe(server.url(), quick());
+  (void)subscription.wait_default_client<CounterStub>(20s);
+  EXPECT_EQ(subscription.services().front().attributes.at("place").get<std::string>(), "roof");
+  server.stop();
+  EXPECT_TRUE(eventually([&] { return subscription.services().front().attributes.empty(); }));
+}
+
 TEST(ServiceSubscriptions, AreToldWhatIsNoUrl) {
   Node node;
   const auto refused = ErrorCode::invalid_argument;

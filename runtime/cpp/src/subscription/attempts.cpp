@@ -161,6 +161,7 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
     const auto whose = target.lock();
     if (self && whose) self->session_ended(whose, *end, why);
   };
+  if (options_.on_path_released) options.on_path_released = options_.on_path_released;
   auto session = std::make_shared<Session>(host_.core, parsed, std::move(options));
   if (is_found) session->set_found();
   host_.keep(session);

@@ -259,7 +259,10 @@ std::vector<SubscribedService> Services::services() const {
     service.last_error = target->error;
     service.failures = target->failures;
     service.is_connected = target->client != nullptr;
-    if (target->client) service.client = target->client->id;
+    if (target->client) {
+      service.client = target->client->id;
+      service.attributes = target->client->session->attributes();
+    }
   }
   return result;
 }
