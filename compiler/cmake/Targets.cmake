@@ -198,14 +198,17 @@ function(robdef_library name)
   endif()
 endfunction()
 
-# robdef_test(NAME SOURCES... [DEPENDS targets...] [ENVIRONMENT KEY=VALUE...] [COST seconds] [SERIAL])
-# A GoogleTest program; each of its tests is a test of CTest. Tests that take long say so by their COST, as
-# others do with the property: CTest begins with them. Tests that measure times run alone: SERIAL.
+# robdef_test(NAME SOURCES... [DEPENDS targets...] [ENVIRONMENT KEY=VALUE...] [COST seconds] [PARTS number] [SERIAL])
+# A GoogleTest program. Tests that take long say so by their COST, as others do with the property: CTest begins with them.
+# Tests that measure times run alone: SERIAL.
+# CTest has each of its tests, with the label `single`, and the program in PARTS (1), with the label `whole`, which are the
+# same tests: most of them are shorter than the start of their program. The presets for tests run those one by one, `./check`
+# these. Under a sanitizer, where programs take longest to start and to end, there are only these.
 function(robdef_test name)
   if(NOT ROBDEF_TESTS)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "COST" "SOURCES;DEPENDS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "COST;PARTS" "SOURCES;DEPENDS;ENVIRONMENT")
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE robdef_warnings ${arg_DEPENDS} GTest::gmock GTest::gtest_main)
@@ -221,9 +224,25 @@ function(robdef_test name)
   if(arg_SERIAL)
     list(APPEND cost RUN_SERIAL ON)
   endif()
-  include(GoogleTest)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT 120 ENVIRONMENT "${arg_ENVIRONMENT}" ${cost})
+  robdef_add_parts(${name} "${arg_PARTS}" TIMEOUT 1800 ${cost})
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    include(GoogleTest)
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+      PROPERTIES TIMEOUT 120 LABELS single ENVIRONMENT "${arg_ENVIRONMENT}" ${cost})
+  endif()
+endfunction()
+# For robdef_test(), whose arg_ENVIRONMENT it reads.
+function(robdef_add_parts name count)
+  if(NOT count)
+    set(count 1)
+  endif()
+  math(EXPR last "${count} - 1")
+  foreach(index RANGE ${last})
+    set(part ${name}.part_${index})
+    add_test(NAME ${part} COMMAND ${name})
+    set_tests_properties(${part} PROPERTIES ${ARGN} LABELS whole
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${count};GTEST_SHARD_INDEX=${index};${arg_ENVIRONMENT}")
+  endforeach()
 endfunction()
 
 # For programs of .NET that load a library of this build: the address sanitizer must be loaded first, and leaves faults and
