@@ -224,12 +224,17 @@ class Network {
     space_ = "rrtest" + number;
     near_ = "rra" + number;
     const std::string far = "rrb" + number;
-    // Two addresses out of the block that is kept for the testing of networks.
+    // Two addresses out of the block that is kept for the testing of networks, others than those of
+    // tests that run meanwhile.
+    const int net = ::getpid() % 16'384;
+    const std::string addresses = "198.18." + std::to_string(net / 64) + ".";
+    const int first = net % 64 * 4;
+    host_ = addresses + std::to_string(first + 2);
     const std::string inside = "ip -n " + space_;
     is_there_ = ::geteuid() == 0 && run("ip netns add " + space_) &&
                 run("ip link add " + near_ + " type veth peer name " + far + " netns " + space_) &&
-                run("ip addr add 198.18.213.1/30 dev " + near_) &&
-                run(inside + " addr add 198.18.213.2/30 dev " + far) &&
+                run("ip addr add " + addresses + std::to_string(first + 1) + "/30 dev " + near_) &&
+                run(inside + " addr add " + host_ + "/30 dev " + far) &&
                 run("ip link set " + near_ + " up") && run(inside + " link set " + far + " up");
     set_link_ = inside + " link set " + far;
   }
@@ -240,13 +245,13 @@ class Network {
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
 
-  static constexpr const char* host = "198.18.213.2";
-
+  /// The address of the service.
+  [[nodiscard]] const std::string& host() const { return host_; }
   [[nodiscard]] bool is_there() const { return is_there_; }
   /// For the program `ip`: the service in the network.
   [[nodiscard]] std::vector<std::string> words_of_service() const {
     std::vector<std::string> words = {"netns", "exec", space_, RR_STRESS_PROGRAM};
-    for (std::string& word : service_words(host)) words.push_back(std::move(word));
+    for (std::string& word : service_words(host_)) words.push_back(std::move(word));
     return words;
   }
   bool take_link_down() { return run(set_link_ + " down"); }
@@ -258,6 +263,7 @@ class Network {
   }
 
   std::string space_;
+  std::string host_;
   std::string near_;  // this side's end of the link
   std::string set_link_;
   bool is_there_ = false;
@@ -269,7 +275,7 @@ TEST(DeadLink, LetsEveryCallEndInItsTime) {
     GTEST_SKIP() << "left out: network namespaces need root and the program ip";
   }
   Child service(network.words_of_service(), "ip");
-  Mourner mourner(patient(), url_of(Network::host, service.wait_for("port")));
+  Mourner mourner(patient(), url_of(network.host(), service.wait_for("port")));
   ASSERT_TRUE(network.take_link_down());
   expect_silence(mourner);
 }
@@ -281,7 +287,7 @@ TEST(DeadLink, ComesBackToSubscriptions) {
   }
   Child service(network.words_of_service(), "ip");
   expect_return(
-      url_of(Network::host, service.wait_for("port")),
+      url_of(network.host(), service.wait_for("port")),
       [&] { ASSERT_TRUE(network.take_link_down()); },
       [&] { ASSERT_TRUE(network.bring_link_up()); });
 }
