@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
 
 #include "gateway/properties.hpp"
 #include "gateway/testing/memory_broker.hpp"
@@ -68,7 +69,7 @@ TEST_F(FarClosings, OfAnObjectReachItsClients) {
   const auto tool = client->object("tools", "left hand");
   auto grip = tool.wire("grip").connect();
   Kept<int> opened;
-  const auto subscription = tool.on_event(
+  auto subscription = tool.on_event(
       "opened", [&](const dynamic::List& arguments) { opened.add(arguments[0].as<int>()); });
   rig.robot.tool().wire("grip").set_in(1.5);
   ASSERT_TRUE(value_comes(grip, 1.5));
@@ -84,12 +85,19 @@ TEST_F(FarClosings, OfAnObjectReachItsClients) {
   auto again = found.wire("grip").connect();
   rig.robot.tool().wire("grip").set_in(2.5);
   EXPECT_TRUE(value_comes(again, 2.5));
+  subscription = Subscription();
   const auto anew = found.on_event(
       "opened", [&](const dynamic::List& arguments) { opened.add(arguments[0].as<int>()); });
   EXPECT_TRUE(comes_true([&] {
     found.call("open", {});
     return !opened.items().empty();
   }));
+  // Each event once: the gateway listens to one object alone.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const std::size_t before = opened.items().size();
+  found.call("open", {});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(opened.items().size(), before + 1);
 }
 
 // It may come back, and with it all that was connected.
