@@ -3,7 +3,9 @@
 """Tests of tools/mutate: which places of a source are changed, and how a test that finds a fault is named."""
 import importlib.machinery
 import importlib.util
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -60,6 +62,102 @@ class Places(unittest.TestCase):
             while SOURCE[:at] + mutant.after + SOURCE[at + len(mutant.before):] != mutant.text:
                 at = SOURCE.index(mutant.before, at + 1)
             self.assertEqual(mutant.line, SOURCE.count("\n", 0, at) + 1)
+
+
+def switch(source, kind, place=None):
+    """The line of a source in which a mutant of a kind, the one at a text if that is named, is behind a switch."""
+    for mutant in mutate.mutants_of("f.cpp", source):
+        if mutant.kind == kind and (place is None or mutant.begin == source.index(place)):
+            text, lines = mutate.switched(source, {7: mutant})
+            return "\n".join(line.strip() for line in text.split("\n")[2:-2]) if lines else None
+    return "there is no such mutant"
+
+
+def in_function(line):
+    return mutate.FIRST_LINE + f"void f() {{\n  {line}\n}}\n"
+
+
+class Switches(unittest.TestCase):
+    def test_are_of_one_condition_statement_or_lock(self):
+        self.assertEqual(switch(in_function("if (is_open_) close();"), "condition"),
+                         "if (static_cast<bool>(is_open_) != rr_mutant(7)) close();")
+        self.assertEqual(switch(in_function("list_.clear();"), "statement"), "{ if (!rr_mutant(7)) list_.clear(); }")
+        self.assertEqual(switch(in_function("const MutexLock lock(a.mutex_);"), "lock"),
+                         "const std::unique_ptr<const MutexLock> lock(rr_mutant(7) ? nullptr : new const MutexLock(a.mutex_));")
+        self.assertIsNone(switch(in_function("const std::lock_guard lock(mutex_);"), "lock"))
+
+    def test_choose_between_two_values(self):
+        self.assertEqual(switch(in_function("if (a < b) c();"), "comparison"), "if ( (rr_mutant(7) ? (a <= b) : (a < b))) c();")
+        self.assertEqual(switch(in_function("const int n = size() + 4;"), "constant"),
+                         "const int n = (rr_mutant(7) ? ( size() + 5) : ( size() + 4));")
+        self.assertEqual(switch(in_function("return a && b;"), "operator"), "return (rr_mutant(7) ? ( a || b) : ( a && b));")
+        self.assertEqual(switch(in_function("for (int i = 0; i < n; i += 2) {}"), "comparison"),
+                         "for (int i = 0; (rr_mutant(7) ? ( i <= n) : ( i < n)); i += 2) {}")
+        self.assertEqual(switch(in_function("for (int i = 0; i < n; i += 2) {}"), "operator"),
+                         "for (int i = 0; i < n; (rr_mutant(7) ? static_cast<void>( i -= 2) : static_cast<void>( i += 2))) {}")
+
+    def test_choose_between_two_statements(self):
+        self.assertEqual(switch(in_function("total_ += n;"), "operator"), "{ if (rr_mutant(7)) { total_ -= n; } else { total_ += n; } }")
+        self.assertEqual(switch(in_function("else f(1);"), "constant"), None)
+        self.assertEqual(switch(in_function("if (a) b(1);"), "constant"), "if (a) { if (rr_mutant(7)) { b(2); } else { b(1); } }")
+
+    def test_are_of_the_innermost_statement(self):
+        source = in_function("post([this] { count_ = 1; });")
+        self.assertEqual(switch(source, "constant"),
+                         "post([this] { { if (rr_mutant(7)) { count_ = 2; } else { count_ = 1; } } });")
+
+    def test_are_not_of_what_the_compiler_needs(self):
+        for line in ["constexpr int n = 4;", "static_assert(n == 4);", "case 4: break;", "std::array<int, 4> a;",
+                     "throw Error(code, 4);", "int list[] = {4};"]:
+            self.assertIsNone(switch(in_function(line), "constant"), line)
+
+    def test_leave_lines_where_they_are(self):
+        source = in_function("return a ==  // of b: \"==\"\n      b;")
+        mutant = next(m for m in mutate.mutants_of("f.cpp", source) if m.kind == "comparison")
+        text, lines = mutate.switched(source, {7: mutant})
+        self.assertEqual(text.count("\n"), source.count("\n"))
+        self.assertEqual(lines, {7: (3, 4)})
+        self.assertTrue(text.startswith("#include"))
+        self.assertIn("( a !=          b)", text)
+
+    def test_of_two_at_one_place_one_is_left(self):
+        mutants = [m for m in mutate.mutants_of("f.cpp", in_function("return a == b;")) if m.kind == "comparison"]
+        _, lines = mutate.switched(in_function("return a == b;"), {1: mutants[0], 2: mutants[0]})
+        self.assertEqual(list(lines), [1])
+
+    def test_compile_and_choose_when_the_program_runs(self):
+        source = (mutate.FIRST_LINE + "#include <cstdio>\n"
+                  "struct MutexLock { explicit MutexLock(int) { std::puts(\"locked\"); } };\n"
+                  "int sum(int n) {\n  int total = 0;\n  for (int i = 0; i < n; ++i) {\n    total += i;\n  }\n  return total;\n}\n"
+                  "int main() {\n  const MutexLock lock(1);\n  const bool is_six = sum(4) == 6;\n  std::puts(is_six ? \"six\" : \"other\");\n"
+                  "  return 0;\n}\n")
+        wanted = {"lock": "six\n", "comparison": "locked\nother\n", "operator": "locked\nother\n"}
+        chosen = {}
+        for mutant in mutate.mutants_of("f.cpp", source):
+            if mutant.kind in wanted and mutant.kind not in chosen.values():
+                chosen[len(chosen) + 1] = mutant.kind
+        by_kind = {m.kind: m for m in reversed(list(mutate.mutants_of("f.cpp", source)))}
+        mutants = {number: by_kind[kind] for number, kind in chosen.items()}
+        with tempfile.TemporaryDirectory() as name:
+            mutate.WORK = pathlib.Path(name)
+            (mutate.WORK / "mutants.hpp").write_text(mutate.SWITCHES)
+            text, lines = mutate.switched(source, mutants)
+            self.assertEqual(sorted(lines), sorted(mutants))
+            (mutate.WORK / "f.cpp").write_text(text)
+            subprocess.run(["c++", "-std=c++20", "-w", "-o", f"{name}/f", f"{name}/f.cpp"], check=True)
+            for number in [0, *mutants]:
+                environment = {**os.environ, "RR_MUTANT": str(number), "RR_MUTANT_REACHED": f"{name}/{number}"}
+                said = subprocess.run([f"{name}/f"], env=environment, capture_output=True, text=True, check=True).stdout
+                self.assertEqual(said, wanted[chosen[number]] if number else "locked\nsix\n")
+                self.assertEqual((mutate.WORK / str(number)).exists(), number != 0)
+
+    def test_errors_blame_the_mutants_of_their_lines(self):
+        lines = {1: (3, 4), 2: (9, 9)}
+        said = ("../../runtime/cpp/src/codec/a.cpp:4:7: error: no match\n../src/codec/b.cpp:9:7: error: no match\n"
+                "a.cpp:9:1: warning: unused\n")
+        self.assertEqual(mutate.blamed(said, "runtime/cpp/src/codec/a.cpp", lines), {1})
+        said = "/x/runtime/cpp/src/codec/a.cpp:9:1:   required from here\n"
+        self.assertEqual(mutate.blamed(said, "runtime/cpp/src/codec/a.cpp", lines), {2})
 
 
 class Draw(unittest.TestCase):
