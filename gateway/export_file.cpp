@@ -243,11 +243,13 @@ class FileReader {
     return rule;
   }
 
-  std::pair<std::string, MappedUser> read_user(const Toml& table) {
-    std::pair<std::string, MappedUser> user;
+  std::pair<BrokerUser, MappedUser> read_user(const Toml& table) {
+    std::pair<BrokerUser, MappedUser> user;
     for (const Toml::Entry& entry : entries(table)) {
       if (entry.key == "broker") {
-        user.first = level(entry.value);
+        user.first.name = level(entry.value);
+      } else if (entry.key == "client") {
+        user.first.client = text(entry.value);
       } else if (entry.key == "service") {
         user.second.name = text(entry.value);
       } else if (entry.key == "password_file") {
@@ -256,16 +258,16 @@ class FileReader {
         unknown(entry, "[[service.user]]");
       }
     }
-    if (user.first.empty()) mistake(table.span, "[[service.user]] needs `broker`");
+    if (user.first.name.empty()) mistake(table.span, "[[service.user]] needs `broker`");
     if (user.second.name.empty()) mistake(table.span, "[[service.user]] needs `service`");
     return user;
   }
 
   void read_users(const Toml& value, ExportedServiceOptions& service) {
-    for (auto& [name, user] : list(value, [this](const Toml& item) { return read_user(item); })) {
-      if (!service.users.emplace(name, user).second) {
-        mistake(value.span, "user `" + name + "` is there twice");
-      }
+    for (auto& [user, login] : list(value, [this](const Toml& item) { return read_user(item); })) {
+      if (service.users.emplace(user, login).second) continue;
+      const std::string client = user.client.empty() ? "" : ", client `" + user.client + "`,";
+      mistake(value.span, "user `" + user.name + "`" + client + " is there twice");
     }
   }
 

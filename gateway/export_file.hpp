@@ -35,7 +35,14 @@ struct ExportRule {
   std::optional<std::chrono::seconds> lifespan;
 };
 
-/// Who a user of the broker is for the service: `[[service.user]]`.
+/// A user of the broker, or a client that has logged in at that user's serving gateway.
+struct BrokerUser {
+  std::string name;
+  std::string client{};  ///< the name in that login; empty: the user itself
+  auto operator<=>(const BrokerUser&) const = default;
+};
+
+/// Who such a user is for the service: `[[service.user]]`.
 struct MappedUser {
   std::string name;      ///< of the service
   std::string password;  ///< from the file that the export file names
@@ -52,7 +59,7 @@ struct ExportedServiceOptions {
   /// A far client's own session at the robot ends when its gateway has said nothing for so long.
   std::chrono::seconds session_limit{30};
   std::vector<ExportRule> rules;
-  std::map<std::string, MappedUser> users;  ///< by the broker's user; for the others: login
+  std::map<BrokerUser, MappedUser> users;  ///< see login_of()
 };
 
 /// A whole export file.
@@ -85,6 +92,10 @@ bool path_fits(std::string_view pattern, std::string_view path);
 /// all: then rules for single users do not count.
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,
                             std::string_view path, std::string_view member, Allowed access);
+
+/// Who a user is at the service: the entry of the client, without one that of the broker's user,
+/// without that the login of the gateway itself.
+const MappedUser& login_of(const ExportedServiceOptions& service, const BrokerUser& user);
 
 /// Whether any rule is for a user of the broker.
 bool is_user(const ExportedServiceOptions& service, std::string_view user);

@@ -80,7 +80,24 @@ TEST(GatewayExportFile, IsRead) {
   EXPECT_EQ(arm.rules[0].period, std::chrono::milliseconds(50));
   EXPECT_EQ(arm.rules[0].lifespan, std::chrono::seconds(5));
   EXPECT_EQ(arm.rules[1].access, reading | writing | calling | locking);
-  EXPECT_EQ(arm.users.at("alice").name, "operator");
+  EXPECT_EQ(arm.users.at({"alice"}).name, "operator");
+}
+
+TEST(GatewayExportFile, ClientsOfAUserMayBeOthersAtTheService) {
+  const auto entry = [](const std::string& broker, const std::string& client,
+                        const std::string& service) {
+    return "[[service.user]]\nbroker = \"" + broker + "\"\nclient = \"" + client +
+           "\"\nservice = \"" + service + "\"\n";
+  };
+  const ExportFile file = parse_export_file("x.toml", good + entry("alice", "eve@site 2", "guest"));
+  const ExportedServiceOptions& arm = file.services[0];
+  EXPECT_EQ(login_of(arm, {"alice"}).name, "operator");
+  EXPECT_EQ(login_of(arm, {"alice", "eve@site 2"}).name, "guest");
+  EXPECT_EQ(login_of(arm, {"alice", "adam"}).name, "operator");
+  EXPECT_EQ(login_of(arm, {"bob", "eve@site 2"}).name, arm.login.name);
+  const std::string twice =
+      mistakes(good + entry("alice", "eve", "guest") + entry("alice", "eve", "x"));
+  EXPECT_TRUE(twice.ends_with("user `alice`, client `eve`, is there twice")) << twice;
 }
 
 TEST(GatewayExportFile, MistakesHaveTheirPlaces) {

@@ -57,6 +57,12 @@ bool path_fits(std::string_view pattern, std::string_view path) {
   }
 }
 
+const MappedUser& login_of(const ExportedServiceOptions& service, const BrokerUser& user) {
+  auto found = service.users.find(user);
+  if (found == service.users.end()) found = service.users.find({user.name});
+  return found == service.users.end() ? service.login : found->second;
+}
+
 bool is_user(const ExportedServiceOptions& service, std::string_view user) {
   return std::ranges::any_of(service.rules, [&](const auto& rule) { return is_for(rule, user); });
 }

@@ -25,7 +25,7 @@ void FarService::take_closed(const Closed& closed) {
 void FarService::release(const std::string& path) {
   if (!service_ || !objects_.contains(path)) return;
   try {
-    (*service_)->release_path(name_ + "." + path);
+    (*service_)->release_path(served_.name + "." + path);
   } catch (const Error&) {
     // No client has it.
   }

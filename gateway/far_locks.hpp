@@ -19,6 +19,9 @@ class FarLocks final : public LockKeeper, public std::enable_shared_from_this<Fa
 
   /// Throws rr::Error: out_of_system_resource when too many requests have no answer yet.
   void keep(LockRequest request, Answer answer) override;
+  void set_user(std::uint32_t client, const std::string& user) override {
+    sessions_->set_user(client, user);
+  }
 
  private:
   const std::shared_ptr<FarSessions> sessions_;

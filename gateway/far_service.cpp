@@ -7,6 +7,8 @@
 #include "gateway/far_locks.hpp"
 #include "gateway/properties.hpp"
 #include "rr/error.hpp"
+#include "rr/rights.hpp"
+#include "rr/users.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -27,11 +29,15 @@ std::vector<std::string> names_in(std::string_view list) {
 
 }  // namespace
 
-FarService::FarService(ServiceAddress address, std::string name, Shared shared)
-    : address_(std::move(address)),
-      name_(std::move(name)),
+FarService::FarService(ServedService served, Shared shared)
+    : served_(std::move(served)),
+      address_(served_.address),
       topic_(service_topic(address_)),
-      shared_(std::move(shared)) {}
+      shared_(std::move(shared)),
+      users_(served_.users_file.empty() ? nullptr : PasswordUsers::from_file(served_.users_file)) {
+  // Mistakes are told now, and not when the robot's definition comes.
+  if (!served_.rights_file.empty()) static_cast<void>(Rights::from_file(served_.rights_file));
+}
 
 void FarService::start() {
   sessions_ = std::make_shared<FarSessions>(
@@ -39,6 +45,8 @@ void FarService::start() {
       [weak = Weak(shared_from_this())](std::uint32_t client, const std::string& reason) {
         if (const Self self = weak.lock()) self->drop(client, reason);
       });
+  // The robot is to know which of them asks.
+  if (users_) sessions_->require();
   shared_.carrier.subscribe(topic_ + "/$closed");
   shared_.carrier.subscribe(topic_ + "/$attributes");
   shared_.carrier.subscribe(topic_ + "/$def/#");
@@ -151,14 +159,16 @@ void FarService::offer(const std::vector<std::string>& texts) {
   if (has_callbacks()) sessions_->require();
   const auto type = definition_->find("object");
   root_ = make_object("", std::string(type.value_or("")));
-  service_ = dynamic::register_service(shared_.node, name_, root_, service_options());
-  shared_.log(LogLevel::info, topic_ + " is offered as `" + name_ + "`");
+  service_ = dynamic::register_service(shared_.node, served_.name, root_, service_options());
+  shared_.log(LogLevel::info, topic_ + " is offered as `" + served_.name + "`");
   shared_.pump();
 }
 
 ServiceOptions FarService::service_options() const {
   ServiceOptions options;
   options.attributes = attributes_.value_or(std::map<std::string, VarValue>());
+  options.users = users_;
+  options.rights_file = served_.rights_file;
   // From the first request on: a client may connect as soon as the service is registered.
   options.lock_keeper = std::make_shared<FarLocks>(sessions_, address_);
   options.on_client_connected = [sessions = sessions_](const ServiceClient& client) {

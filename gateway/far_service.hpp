@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "gateway/closed_list.hpp"
-#include "gateway/exporter.hpp"
 #include "gateway/far_calls.hpp"
 #include "gateway/far_packets.hpp"
 #include "gateway/far_sessions.hpp"
 #include "gateway/far_stream.hpp"
+#include "gateway/server.hpp"
 #include "gateway/value_order.hpp"
 #include "rr/dynamic_service.hpp"
 
@@ -39,8 +39,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
     std::chrono::milliseconds session_alive;  ///< as ServerOptions has it
   };
 
-  /// `name` is that of the service here.
-  FarService(ServiceAddress address, std::string name, Shared shared);
+  /// Throws rr::Error (invalid_configuration) for files of users and rights.
+  FarService(ServedService served, Shared shared);
 
   /// Subscribes to what tells of the service.
   void start();
@@ -57,7 +57,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
   /// To be called often.
   void tick();
   /// Which service it is.
-  [[nodiscard]] const ServiceAddress& address() const { return address_; }
+  [[nodiscard]] const ServiceAddress& address() const { return served_.address; }
   /// Why the robot may not answer; empty when it seems to be there.
   [[nodiscard]] std::string trouble() const;
 
@@ -112,10 +112,11 @@ class FarService : public std::enable_shared_from_this<FarService> {
                   Function<bool()> has_room);
   void report_gap(const std::string& member, const StreamGap& gap);
 
-  const ServiceAddress address_;
-  const std::string name_;
+  const ServedService served_;
+  const ServiceAddress& address_;
   const std::string topic_;
   Shared shared_;
+  const std::shared_ptr<const Users> users_;         // of this gateway; null: clients do not log in
   std::shared_ptr<FarSessions> sessions_;            // from start() on
   std::optional<Message> definition_;                // `$def` itself
   std::chrono::steady_clock::time_point defined_{};  // when it came

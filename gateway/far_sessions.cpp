@@ -37,6 +37,18 @@ void FarSessions::begin(std::uint32_t client) {
   sessions_[client];
 }
 
+void FarSessions::set_user(std::uint32_t client, const std::string& user) {
+  Session before;
+  {
+    const MutexLock lock(mutex_);
+    const auto found = sessions_.find(client);
+    if (found == sessions_.end() || found->second.user == user) return;
+    before = std::exchange(found->second, Session{.user = user});
+    if (before.state != State::none) --begun_;
+  }
+  give_up(before, error_pointer(ErrorCode::authentication_error, "the client's user has changed"));
+}
+
 void FarSessions::end(std::uint32_t client) {
   Session session;
   {
@@ -46,9 +58,13 @@ void FarSessions::end(std::uint32_t client) {
     session = std::move(node.mapped());
     if (session.state != State::none) --begun_;
   }
-  // While it begins, too: it may have begun at the robot.
+  give_up(session, client_has_gone());
+}
+
+// While it begins, too: it may have begun at the robot.
+void FarSessions::give_up(const Session& session, const std::exception_ptr& reason) {
   if (session.state != State::none) end_at_robot(session.name);
-  for (const Waiting& each : session.waiting) each.done(client_has_gone(), {});
+  for (const Waiting& each : session.waiting) each.done(reason, {});
 }
 
 void FarSessions::end_all() {
@@ -90,6 +106,7 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
                       bool needs_session) {
   std::exception_ptr refusal;
   std::string name;
+  std::string user;
   bool opens = false;
   bool is_waiting = false;
   {
@@ -102,6 +119,7 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
       is_waiting = session.state == State::opening && has_room(session, refusal);
       if (is_waiting) session.waiting.push_back({std::move(wanted), std::move(done)});
       name = session.name;
+      if (opens) user = session.user;
     } else if (is_needed) {
       refusal = client_has_gone();
     }
@@ -109,7 +127,7 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
   if (refusal) {
     done(refusal, {});
   } else if (opens) {
-    open(client, name);
+    open(client, name, user);
   } else if (name.empty()) {
     calls_->request(std::move(wanted), std::move(done));
   } else if (!is_waiting) {
@@ -140,12 +158,13 @@ FarRequest FarSessions::about_session(std::string_view operation, const std::str
   return {address_, Verb::session, "", "", {}, {{"op", std::string(operation)}, {"session", name}}};
 }
 
-void FarSessions::open(std::uint32_t client, const std::string& name) {
-  calls_->request(
-      about_session("open", name),
-      [weak = weak_from_this(), client, name](const std::exception_ptr& error, const Message&) {
-        if (const auto self = weak.lock()) self->opened(client, name, error);
-      });
+void FarSessions::open(std::uint32_t client, const std::string& name, const std::string& user) {
+  FarRequest wanted = about_session("open", name);
+  if (!user.empty()) wanted.properties.emplace_back("client-user", user);
+  calls_->request(std::move(wanted), [weak = weak_from_this(), client, name](
+                                         const std::exception_ptr& error, const Message&) {
+    if (const auto self = weak.lock()) self->opened(client, name, error);
+  });
 }
 
 void FarSessions::opened(std::uint32_t client, const std::string& name,
@@ -158,7 +177,7 @@ void FarSessions::opened(std::uint32_t client, const std::string& name,
     Session& session = found->second;
     waiting.swap(session.waiting);
     if (error) {
-      session = {};
+      session = {.user = session.user};
       --begun_;
     } else {
       session.state = State::open;

@@ -38,6 +38,9 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   void require();
   /// A client has connected; its number is that of its endpoint in this node.
   void begin(std::uint32_t client);
+  /// It has logged in here as this user, for whom its session at the robot is from then on; empty
+  /// for none. A session of another user ends.
+  void set_user(std::uint32_t client, const std::string& user);
   /// It has gone: its session at the robot ends.
   void end(std::uint32_t client);
   /// All have gone.
@@ -68,6 +71,7 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   };
   struct Session {
     State state = State::none;
+    std::string user{};  // of this gateway
     std::string name{};
     std::vector<Waiting> waiting{};
   };
@@ -76,9 +80,10 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   // Both say why not.
   bool begin_opening(Session& session, std::exception_ptr& refusal) RR_REQUIRES(mutex_);
   bool has_room(const Session& session, std::exception_ptr& refusal) const;
-  void open(std::uint32_t client, const std::string& name);
+  void open(std::uint32_t client, const std::string& name, const std::string& user);
   void opened(std::uint32_t client, const std::string& name, const std::exception_ptr& error);
   void send(std::uint32_t client, const std::string& name, FarRequest wanted, FarCalls::Done done);
+  void give_up(const Session& session, const std::exception_ptr& reason);
   void end_at_robot(const std::string& name);
   void lose(std::uint32_t client, const std::string& name);
   [[nodiscard]] FarRequest about_session(std::string_view operation, const std::string& name) const;

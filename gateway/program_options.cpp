@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/program_options.hpp"
 
+#include <map>
 #include <utility>
 
 #include "gateway/topics.hpp"
@@ -34,12 +35,17 @@ ServedService served_service(const std::string& word) {
 }
 
 class Words {
+  using Files = std::map<std::string, std::string>;
+
  public:
   explicit Words(const std::vector<std::string>& words) : words_(words) {}
 
   ProgramOptions read() {
     while (at_ < words_.size()) take(words_[at_++]);
     if (options_.task == Task::serve) check_serve();
+    if (options_.task != Task::serve && !(users_.empty() && rights_.empty())) {
+      refuse_word("`--users` and `--rights` need `--serve`");
+    }
     if (options_.task == Task::fleet && options_.broker.url.empty()) {
       refuse_word("`--fleet` needs `--broker`");
     }
@@ -68,6 +74,10 @@ class Words {
     } else if (word == "--serve") {
       options_.task = Task::serve;
       options_.server.services.push_back(served_service(value(word)));
+    } else if (word == "--users") {
+      add_file(users_, word);
+    } else if (word == "--rights") {
+      add_file(rights_, word);
     } else if (word == "--broker") {
       options_.broker.url = value(word);
     } else if (word == "--reader") {
@@ -104,6 +114,18 @@ class Words {
     }
   }
 
+  /// `name=file`.
+  void add_file(Files& files, const std::string& flag) {
+    const std::string& word = value(flag);
+    const std::size_t equals = word.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == word.size()) {
+      refuse_word("`" + flag + " " + word + "` is not of the form name=file");
+    }
+    if (!files.emplace(word.substr(0, equals), word.substr(equals + 1)).second) {
+      refuse_word("`" + flag + " " + word + "` is there twice");
+    }
+  }
+
   void take_file(const std::string& word) {
     const bool is_more = !options_.export_files.empty() && options_.task != Task::access_list;
     if (word.starts_with("-") || is_more) refuse_word("`" + word + "` is not expected");
@@ -118,10 +140,25 @@ class Words {
     if (!is_level_name(options_.server.reader))
       refuse_word("`--serve` needs `--reader` with a name");
     options_.server.user = options_.broker.user;
+    for (ServedService& service : options_.server.services) {
+      service.users_file = take_named(users_, service.name);
+      service.rights_file = take_named(rights_, service.name);
+    }
+    for (const Files* rest : {&users_, &rights_}) {
+      if (!rest->empty()) refuse_word("no service is served as `" + rest->begin()->first + "`");
+    }
+  }
+
+  /// The file for a service, which is not among the rest then.
+  static std::string take_named(Files& files, const std::string& name) {
+    auto node = files.extract(name);
+    return node.empty() ? std::string() : std::move(node.mapped());
   }
 
   const std::vector<std::string>& words_;
   std::size_t at_ = 0;
+  Files users_;  // by the service's name here
+  Files rights_;
   ProgramOptions options_;
 };
 
@@ -143,6 +180,8 @@ const char* const program_help =
 
   --broker URL           mqtt://host:port or nats://host:port; mqtts:// or tls:// for TLS
   --reader NAME          the name by which export files declare this reader
+  --users NAME=FILE      clients of the service NAME log in here, as users of the file
+  --rights NAME=FILE     what these users may do at the service NAME
   --user NAME            user of the broker; without it the reader's name stands in topics
   --password-file FILE   that user's password
   --token-file FILE      NATS: a token in place of user and password

@@ -38,6 +38,40 @@ TEST(GatewayOptions, ServicesAreServed) {
   EXPECT_EQ(options.broker.key, "desk.key");
 }
 
+TEST(GatewayOptions, ServicesHaveUsers) {
+  const auto options = read_options({"--users", "arm2=people", "--serve", "hall/r1/arm", "--serve",
+                                     "hall/r2/arm=arm2", "--rights", "arm2=rules=2", "--broker",
+                                     "mqtts://hub", "--reader", "desk"});
+  ASSERT_EQ(options.server.services.size(), 2U);
+  EXPECT_EQ(options.server.services[0].users_file, "");
+  EXPECT_EQ(options.server.services[0].rights_file, "");
+  EXPECT_EQ(options.server.services[1].users_file, "people");
+  EXPECT_EQ(options.server.services[1].rights_file, "rules=2");
+}
+
+TEST(GatewayOptions, FilesAreForServedServicesOnly) {
+  const auto refusal = [](std::vector<std::string> more) {
+    std::vector<std::string> words = {"--serve", "hall/r1/arm", "--broker", "x", "--reader", "y"};
+    words.insert(words.end(), more.begin(), more.end());
+    try {
+      read_options(words);
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return std::string("taken");
+  };
+  EXPECT_EQ(refusal({"--users", "leg=people"}),
+            "no service is served as `leg`; see robdef-gateway --help");
+  EXPECT_EQ(refusal({"--rights", "arm"}),
+            "`--rights arm` is not of the form name=file; see robdef-gateway --help");
+  EXPECT_EQ(refusal({"--users", "arm="}),
+            "`--users arm=` is not of the form name=file; see robdef-gateway --help");
+  EXPECT_EQ(refusal({"--users", "=people"}),
+            "`--users =people` is not of the form name=file; see robdef-gateway --help");
+  EXPECT_EQ(refusal({"--users", "arm=one", "--users", "arm=two"}),
+            "`--users arm=two` is there twice; see robdef-gateway --help");
+}
+
 TEST(GatewayOptions, AccessListsAreMadeOfFiles) {
   const auto options = read_options({"--acl", "mosquitto", "one", "two"});
   EXPECT_EQ(options.task, Task::access_list);
@@ -72,6 +106,7 @@ TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
         {"one", "two"},
         {"--fleet"},
         {"--json", "one"},
+        {"--users", "arm=people", "one"},
         {"--acl"},
         {"--acl", "mosquitto"},
         {"--acl", "emqx", "one"},

@@ -15,6 +15,10 @@ namespace rr::gateway {
 struct ServedService {
   ServiceAddress address;
   std::string name;  ///< of the service at this node
+  /// Users of this gateway (PasswordUsers), one of whom each client has to be; empty: no logins.
+  std::string users_file{};
+  /// What each of them may do here (ServiceOptions::rights_file); empty: everything.
+  std::string rights_file{};
 };
 
 /// How far robots are offered.
@@ -33,7 +37,8 @@ struct ServerOptions {
 class Server {
  public:
   /// Starts both carriers. Node and carriers must outlive it; handlers of the node wait for robots,
-  /// so it needs threads. Throws rr::Error (invalid_argument) for names.
+  /// so it needs threads. Throws rr::Error: invalid_argument for names, invalid_configuration for
+  /// files of users and rights.
   Server(ServerOptions options, Node& node, const Carriers& carriers, Log log);
   /// Closes the services.
   ~Server();

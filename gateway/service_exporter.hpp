@@ -133,7 +133,6 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void answer_error(const RequestTopic& request, const Message& message,
                     const std::exception_ptr& error, std::string_view at);
   std::shared_ptr<RobotSession> session_of(const std::string& user);
-  [[nodiscard]] const MappedUser& login_of(const std::string& user) const;
 
   // service_sessions.cpp
   void handle_session(const RequestTopic& request, const Message& message);

@@ -137,15 +137,10 @@ void ServiceExporter::execute_once(const RequestTopic& request, const Message& m
 }
 
 std::shared_ptr<RobotSession> ServiceExporter::session_of(const std::string& user) {
-  if (!options_.users.contains(user)) return session_;
+  if (!options_.users.contains({user})) return session_;
   auto& session = user_sessions_[user];
-  if (!session) session = RobotSession::open(*node_, options_.url, login_of(user), {});
+  if (!session) session = RobotSession::open(*node_, options_.url, login_of(options_, {user}), {});
   return session;
-}
-
-const MappedUser& ServiceExporter::login_of(const std::string& user) const {
-  const auto mapped = options_.users.find(user);
-  return mapped == options_.users.end() ? options_.login : mapped->second;
 }
 
 void ServiceExporter::answer(const RequestTopic& request, const Message& message, Message result) {

@@ -58,7 +58,8 @@ void ServiceExporter::open_session(const RequestTopic& request, const Message& m
   try {
     // Calls of the client's functions go there.
     if (!is_reply_topic(message.response_topic, request.user)) return;
-    sessions_.open(*node_, options_.url, login_of(request.user), request.user,
+    const BrokerUser user{request.user, std::string(message.find("client-user").value_or(""))};
+    sessions_.open(*node_, options_.url, login_of(options_, user), request.user,
                    std::string(message.find("session").value_or("")), message.response_topic,
                    opened);
   } catch (const Error&) {

@@ -3,14 +3,17 @@
 
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <stdexcept>
+
+#include "rr/users.hpp"
 
 namespace rr::conformance {
 namespace {
 
 constexpr const char* site = "conformance";
-// The user of the broker for clients that do not log in.
-constexpr const char* anybody = "anybody";
+// The serving gateway, as reader and user of the broker.
+constexpr const char* desk = "desk";
 
 // An index as paths of export files have it.
 std::string encoded(const std::string& index) {
@@ -53,13 +56,6 @@ const Json& service_named(const Captures& captures, const std::string& name) {
   throw std::runtime_error("there is no service " + name);
 }
 
-bool is_served(const Captures& captures, const std::string& name) {
-  for (const Json& service : captures.service.at("services")) {
-    if (service.at("name") == name) return true;
-  }
-  return false;
-}
-
 // The script of the root: its own, or "as NAME".
 const Json& root_of(const Captures& captures, const Json& service) {
   const Json& node = service.at("node");
@@ -78,44 +74,55 @@ Gateways::Gateways(Broker& broker, const std::string& program, const Captures& c
                    const Scenario& scenario, int service_port)
     : folder_(broker.new_folder()), robot_(broker.new_name()) {
   find_services(captures, scenario);
-  find_logins(scenario);
-  write_passwords();
+  find_logins(captures, scenario);
+  write_logins();
   const std::string file = (folder_ / "export.toml").string();
   std::ofstream(file) << export_text(captures, broker.url(), service_port);
   exporting_ =
       std::make_unique<Program>(std::vector<std::string>{program, file}, folder_ / "exporting.log");
-  serve(program, broker.url(), scenario, anybody);
-  for (const auto& [user, password] : logins_) serve(program, broker.url(), scenario, user);
-  for (auto& [user, serving] : serving_) {
-    for (const auto& [service, has_users] : services_) {
-      const std::string topic = std::string("rr/") + site + "/" + robot_ + "/" + service;
-      serving.program->wait_for(topic + " is offered");
-      serving.program->wait_for(topic + " is up");
-    }
+  serve(program, broker.url(), scenario);
+  for (const auto& [service, has_users] : services_) {
+    const std::string topic = std::string("rr/") + site + "/" + robot_ + "/" + service;
+    serving_->wait_for(topic + " is offered");
+    serving_->wait_for(topic + " is up");
   }
 }
 
 void Gateways::find_services(const Captures& captures, const Scenario& scenario) {
+  std::set<std::string> wanted;
   for (const Step& step : scenario.steps) {
-    if (step.plan.at("op") != "connect") continue;
-    const std::string name = step.plan.at("service");
-    if (!is_served(captures, name)) continue;
-    services_[name] = service_named(captures, name).contains("auth");
+    if (step.plan.at("op") == "connect") wanted.insert(step.plan.at("service").get<std::string>());
+  }
+  const bool is_index = wanted.contains("RobotRaconteurServiceIndex");
+  for (const Json& service : captures.service.at("services")) {
+    const std::string name = service.at("name");
+    if (is_index || wanted.contains(name)) services_[name] = service.contains("auth");
   }
   // A gateway serves something, even if no client asks for it.
   if (services_.empty()) services_[captures.service.at("services").at(0).at("name")] = false;
 }
 
-void Gateways::find_logins(const Scenario& scenario) {
-  for (const Step& step : scenario.steps) {
-    const bool logs_in = step.plan.at("op") == "connect" && step.plan.contains("username") &&
-                         !step.plan.contains("raised");
-    if (logs_in) logins_[step.plan.at("username")] = password_in(step);
+// Of a service that is served without a client in this scenario they are those of other scenarios:
+// the robot's gateway needs one.
+void Gateways::find_logins(const Captures& captures, const Scenario& scenario) {
+  add_logins(scenario);
+  for (const Scenario& other : captures.scenarios) {
+    if (logins_.empty()) add_logins(other);
   }
 }
 
-void Gateways::write_passwords() const {
+void Gateways::add_logins(const Scenario& scenario) {
+  for (const Step& step : scenario.steps) {
+    if (step.plan.contains("username") && !step.plan.contains("raised")) {
+      logins_[step.plan.at("username")] = password_in(step);
+    }
+  }
+}
+
+void Gateways::write_logins() const {
+  std::ofstream users(folder_ / "users");
   for (const auto& [user, password] : logins_) {
+    users << user << " " << PasswordUsers::hash(password) << " _\n";
     std::ofstream(folder_ / (user + ".secret")) << password << "\n";
   }
 }
@@ -146,18 +153,20 @@ std::string Gateways::service_text(const Json& service, const Captures& captures
   text += rules_for(root_of(captures, service), "");
   if (!has_login) return text;
   for (const auto& [user, password] : logins_) {
-    text += "[[service.user]]\nbroker = " + quoted(user) + "\nservice = " + quoted(user) +
-            "\npassword_file = " + quoted(user + ".secret") + "\n";
+    text += "[[service.user]]\nbroker = " + quoted(desk) + "\nclient = " + quoted(user) +
+            "\nservice = " + quoted(user) + "\npassword_file = " + quoted(user + ".secret") + "\n";
   }
   return text;
 }
 
 void Gateways::serve(const std::string& program, const std::string& broker_url,
-                     const Scenario& scenario, const std::string& user) {
-  std::vector<std::string> words = {program, "--broker", broker_url, "--reader", user};
+                     const Scenario& scenario) {
+  std::vector<std::string> words = {program, "--broker", broker_url, "--reader", desk};
   for (const auto& [service, has_users] : services_) {
     words.insert(words.end(),
                  {"--serve", std::string(site) + "/" + robot_ + "/" + service + "=" + service});
+    if (!has_users) continue;
+    words.insert(words.end(), {"--users", service + "=" + (folder_ / "users").string()});
   }
   // Clients know the node by its id and name. Others on this machine must not find it.
   for (const std::string& flag :
@@ -167,35 +176,13 @@ void Gateways::serve(const std::string& program, const std::string& broker_url,
         std::string("discovery-listening-enable=false")}) {
     words.push_back("--robotraconteur-" + flag);
   }
-  Serving& serving = serving_[user];
-  serving.program =
-      std::make_unique<Program>(std::move(words), folder_ / ("serving-" + user + ".log"));
-  serving.port = serving.program->wait_for("listens at port ");
-  serving.port = serving.port.substr(0, serving.port.find_first_not_of("0123456789"));
-}
-
-// The gateway of a user logs in as the plan does; any other login is for the client to try.
-std::string Gateways::login_of(const Step& step) const {
-  const auto known = logins_.find(step.plan.value("username", ""));
-  const bool is_same = known != logins_.end() && known->second == password_in(step);
-  return is_same ? known->first : std::string();
-}
-
-Step Gateways::without_login(const Step& step) const {
-  Step other = step;
-  if (step.plan.at("op") != "connect" || login_of(step).empty()) return other;
-  other.plan.erase("username");
-  other.plan.erase("credentials");
-  return other;
-}
-
-std::string Gateways::place_for(const Step& step) const {
-  const std::string user = login_of(step);
-  return "rr+tcp://127.0.0.1:" + serving_.at(user.empty() ? anybody : user).port + "/?";
+  serving_ = std::make_unique<Program>(std::move(words), folder_ / "serving.log");
+  port_ = serving_->wait_for("listens at port ");
+  port_ = port_.substr(0, port_.find_first_not_of("0123456789"));
 }
 
 void Gateways::end() {
-  for (auto& [user, serving] : serving_) serving.program->end();
+  serving_->end();
   exporting_->end();
 }
 

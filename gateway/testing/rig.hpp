@@ -63,7 +63,7 @@ class Rig {
     port_ = server_node_->listen_tcp(0);
     server_carriers_ = make_carriers_();
     ServerOptions options;
-    options.services = {{{"hall", "robot", "bench"}, "bench"}};
+    options.services = {served};
     options.reader = "hub";
     options.limit = limit_;
     options.repeat = std::chrono::milliseconds(300);
@@ -78,10 +78,9 @@ class Rig {
   /// Connects as soon as the service is offered.
   dynamic::Client connect(const ConnectOptions& options = {}) {
     dynamic::Client client;
-    const std::string url = "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
     const bool is_connected = comes_true([&] {
       try {
-        client = dynamic::connect(client_node_, url, options);
+        client = connect_once(options);
         return true;
       } catch (const Error&) {
         return false;
@@ -89,6 +88,18 @@ class Rig {
     });
     if (!is_connected) throw std::runtime_error("the service is not offered");
     return client;
+  }
+
+  /// Fails when the service is not offered yet, or refuses.
+  dynamic::Client connect_once(const ConnectOptions& options = {}) {
+    return dynamic::connect(
+        client_node_, "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench", options);
+  }
+  /// A file that goes with the test; returns its path.
+  [[nodiscard]] std::string write_file(const std::string& name, const std::string& text) const {
+    std::string path = folder_.path() + "/" + name;
+    std::ofstream(path) << text;
+    return path;
   }
 
   /// The user of the gateway, for clients of the robot itself.
@@ -99,6 +110,8 @@ class Rig {
     return options;
   }
 
+  /// What start_server() serves.
+  ServedService served{{"hall", "robot", "bench"}, "bench"};
   BenchService robot;
   Kept<std::string> log;
   std::string rules =

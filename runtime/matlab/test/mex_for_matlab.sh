@@ -9,7 +9,6 @@ build=$(cd "$1" && pwd)
 octave=$2
 here=$(cd "$(dirname "$0")" && pwd)
 source "$here/with_service.sh"
-start_service "$build/tests/matlab_test_service"
 export RR_TEST_FOLDER=$work RR_TEST_HEADERS=$4
 export RR_TEST_COMPILER="$(command -v ccache || true) $3"
 # Of another folder, what is compiled is the same for ccache.
@@ -17,6 +16,8 @@ export CCACHE_BASEDIR=$work
 "$octave" --norc --path "$here/.." --path "$here/mex_for_matlab" \
   --eval "build_mex('$build', '$work/toolbox', true, true)"
 file=$work/toolbox/rrmex.mex
+# The service does not wait for a slow compiler.
+start_service "$build/tests/matlab_test_service"
 
 fail() {
   echo "FAILED: $1"

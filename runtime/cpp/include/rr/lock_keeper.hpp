@@ -45,6 +45,13 @@ class LockKeeper {
   /// Called on a thread of the node, which must not be blocked; what it throws is an answer, too.
   /// A client that waits for a monitor expects an answer within 5 s.
   virtual void keep(LockRequest request, Answer answer) = 0;
+  /// A client has logged in as this user, or out, where it is empty: whose locks it asks for from
+  /// its next request on. `client` is the number of its endpoint in this node. Called on a thread
+  /// of the node, which must not be blocked.
+  virtual void set_user(std::uint32_t client, const std::string& user) {
+    static_cast<void>(client);
+    static_cast<void>(user);
+  }
 };
 
 }  // namespace rr

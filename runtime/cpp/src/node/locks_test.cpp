@@ -248,7 +248,7 @@ TEST(Locks, EndWhenTheObjectIsReleased) {
   EXPECT_EQ(bob->get_by_name("a")->get_value(), 0);
 }
 
-// Says yes to everything, and keeps what it was asked.
+// Says yes to everything, and keeps what it was asked and told.
 class Agreeing final : public LockKeeper {
  public:
   void keep(LockRequest request, Answer answer) override {
@@ -258,6 +258,14 @@ class Agreeing final : public LockKeeper {
     }
     answer(nullptr, false);
   }
+  void set_user(std::uint32_t client, const std::string& user) override {
+    const MutexLock lock(mutex_);
+    users_.emplace_back(client, user);
+  }
+  std::vector<std::pair<std::uint32_t, std::string>> users() const {
+    const MutexLock lock(mutex_);
+    return users_;
+  }
   std::vector<LockRequest> asked() const {
     const MutexLock lock(mutex_);
     return asked_;
@@ -266,6 +274,7 @@ class Agreeing final : public LockKeeper {
  private:
   mutable Mutex mutex_;
   std::vector<LockRequest> asked_ RR_GUARDED_BY(mutex_);
+  std::vector<std::pair<std::uint32_t, std::string>> users_ RR_GUARDED_BY(mutex_);
 };
 
 TEST(Locks, AreLeftToAKeeperFromTheFirstRequestOn) {
@@ -290,6 +299,24 @@ TEST(Locks, AreLeftToAKeeperFromTheFirstRequestOn) {
               ::testing::ElementsAre(Operation::lock_for_session, Operation::unlock,
                                      Operation::enter_monitor, Operation::exit_monitor));
   EXPECT_EQ(asked.at(2).timeout, 250ms);
+}
+
+TEST(Locks, AKeeperKnowsForWhom) {
+  const auto keeper = std::make_shared<Agreeing>();
+  Pair pair({}, {}, std::make_shared<Counter>(),
+            {.users = std::make_shared<PasswordUsers>(accounts), .lock_keeper = keeper});
+  auto client = pair.connect({.username = "alice", .credentials = {{"password", "alice"}}});
+  const std::uint32_t number = pair.service->clients().front().endpoint;
+  EXPECT_EQ(code_of([&] {
+              client.authenticate("bob", {{"password", "alice"}});
+            }),
+            ErrorCode::authentication_error);
+  client.authenticate("bob", {{"password", "bob"}});
+  client.logout();
+  client.logout();
+  EXPECT_THAT(keeper->users(), ::testing::ElementsAre(std::pair(number, std::string("alice")),
+                                                      std::pair(number, std::string("bob")),
+                                                      std::pair(number, std::string())));
 }
 
 TEST(Monitors, LetOneSessionIn) {

@@ -10,7 +10,9 @@
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 
@@ -114,6 +116,7 @@ void ServerEndpoint::become(std::shared_ptr<const User> user) {
   audit_.logged_in(name);
   connection_->set_authorised(true);
   end_what_is_not_allowed(*host_, replaced != nullptr);
+  tell_keeper(name);
 }
 
 void ServerEndpoint::log_out() {
@@ -122,6 +125,14 @@ void ServerEndpoint::log_out() {
   audit_.logged_out(*before, {});
   connection_->set_authorised(!host_->requires_user());
   end_what_is_not_allowed(*host_, true);
+  tell_keeper({});
+}
+
+void ServerEndpoint::tell_keeper(const std::string& user) {
+  auto* const keeper = host_->lock_keeper();
+  if (keeper == nullptr) return;
+  endpoint::call_user_code(*directory_->core(), "a lock keeper of", host_->name(),
+                           [&] { keeper->set_user(client_.endpoint, user); });
 }
 
 void ServerEndpoint::renew_rights(ServiceHost& host) {

@@ -215,6 +215,7 @@ class ServerEndpoint final : public channel::Receiver,
   void check_locks(const Question& question, std::string_view member);
   void become(std::shared_ptr<const User> user);
   void log_out();
+  void tell_keeper(const std::string& user);
   void end_what_is_not_allowed(ServiceHost& host, bool is_all);
   std::shared_ptr<const User> need_user() const;
   void answer_session_operation(const Question& question);
