@@ -93,7 +93,7 @@ TEST(Services, AClientCanBeSentAway) {
   options.on_closed = [&](const Error& error) { why.set_value(error.code()); };
   auto counter = pair.connect(options);
   pair.service->disconnect(pair.service->clients().front().endpoint);
-  EXPECT_EQ(why.get_future().get(), ErrorCode::connection_error);
+  EXPECT_EQ(why.get_future().get(), ErrorCode::service_not_found);
   EXPECT_TRUE(pair.service->clients().empty());
 }
 

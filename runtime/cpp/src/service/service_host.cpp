@@ -270,11 +270,19 @@ void ServiceHost::notify(const std::function<void(const ServiceClient&)>& functi
   endpoint::call_user_code(*core_, "a listener of", name_, [&] { function(client); });
 }
 
+// For this client the service is closed; without a word it would look for a fault of its link.
 void ServiceHost::disconnect(std::uint32_t endpoint) {
   const auto clients = connected();
   for (const auto& client : *clients) {
-    if (client->client().endpoint == endpoint) client->leave();
+    if (client->client().endpoint != endpoint) continue;
+    tell_closed(*client);
+    client->leave();
   }
+}
+
+void ServiceHost::tell_closed(ServerEndpoint& client) {
+  if (!client.access().may_send(EntryType::service_closed, {}, {})) return;
+  client.send_packet({.type = EntryType::service_closed}, {}, nullptr);
 }
 
 std::string ServiceHost::releasable(const std::string& path) const {
@@ -351,10 +359,7 @@ void ServiceHost::close() {
   }
   if (const auto directory = directory_.lock()) directory->remove(*this);
   const auto clients = connected();
-  for (const auto& client : *clients) {
-    if (!client->access().may_send(EntryType::service_closed, {}, {})) continue;
-    client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
-  }
+  for (const auto& client : *clients) tell_closed(*client);
   for (const auto& client : *clients) client->leave();
   ObjectTree::Released released = objects_.clear();
   detach(released);

@@ -107,6 +107,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   void detach(const ObjectTree::Released& released);
   static void tell_released(const endpoint::Core& core, ObjectTree::Released released);
   void tell_released_later(ObjectTree::Released released) const;
+  static void tell_closed(ServerEndpoint& client);
   void notify(const std::function<void(const ServiceClient&)>& function,
               const ServiceClient& client) const;
 
