@@ -285,8 +285,8 @@ TEST(WireEnds, AreRefusedAfterTheEndAsRequestsAre) {
   auto sent_away = pair.connect();
   pair.service->disconnect(pair.service->clients().at(0).endpoint);
   ASSERT_TRUE(eventually([&] { return !sent_away.is_open(); }));
-  EXPECT_EQ(error_of([&] { sent_away->level().connect(); }).code(), ErrorCode::connection_error);
-  EXPECT_EQ(error_of([&] { sent_away->set_level(1); }).code(), ErrorCode::connection_error);
+  EXPECT_EQ(error_of([&] { sent_away->level().connect(); }).code(), ErrorCode::invalid_operation);
+  EXPECT_EQ(error_of([&] { sent_away->set_level(1); }).code(), ErrorCode::invalid_operation);
   auto closed = pair.connect();
   closed.close();
   EXPECT_EQ(error_of([&] { closed->level().connect(); }).code(), ErrorCode::invalid_operation);
