@@ -48,9 +48,8 @@ class Server::Core final : public CarrierHandler {
       check_level(service.address.node);
       check_level(service.address.service);
       services_.push_back(std::make_shared<FarService>(
-          service,
-          FarService::Shared{node, *worker_, outbox_, carrier_, values_, calls_, reader, log_,
-                             [this] { pump(); }, options.session_alive}));
+          service, FarService::Shared{node, *worker_, outbox_, carrier_, values_, calls_, reader,
+                                      log_, [this] { pump(); }, options.session_alive}));
     }
     life_.topic = calls_->reply_topic();
   }
