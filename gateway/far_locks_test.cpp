@@ -16,6 +16,7 @@ namespace rr::gateway {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::code_of;
 using testing::comes_true;
 using testing::MemoryBroker;
 using testing::Rig;
@@ -29,24 +30,14 @@ constexpr const char* with_locks =
 /// A time limit of requests that no test reaches.
 constexpr milliseconds lock_patience{20'000};
 
-template <class Call>
-ErrorCode code_of_lock(Call call) {
-  try {
-    static_cast<void>(call());
-    return ErrorCode::none;
-  } catch (const Error& error) {
-    return error.code();
-  }
-}
-
 /// Two clients of one serving gateway, and one of the robot itself.
 class FarLocksTest : public ::testing::Test {
  protected:
   static ErrorCode use(const dynamic::Client& client) {
-    return code_of_lock([&] { return client->get("speed"); });
+    return code_of([&] { return client->get("speed"); });
   }
   static ErrorCode lock_by(const dynamic::Client& client, LockOwner owner) {
-    return code_of_lock([&] {
+    return code_of([&] {
       lock(client->stub(), owner);
       return 0;
     });
@@ -89,7 +80,7 @@ TEST_F(FarLocksTest, AreOfSingleObjects) {
   const auto tool = one->object("tools", "left hand");
   lock(tool.stub(), LockOwner::session);
   EXPECT_EQ(use(two), ErrorCode::none);
-  EXPECT_EQ(code_of_lock([&] { return two->object("tools", "left hand").get("width"); }),
+  EXPECT_EQ(code_of([&] { return two->object("tools", "left hand").get("width"); }),
             ErrorCode::object_locked_error);
   unlock(tool.stub());
   EXPECT_EQ(two->object("tools", "left hand").get("width").as<double>(), 2.5);
@@ -179,7 +170,7 @@ TEST_F(FarLocksTest, TheAnswerThatEndsTheSessionArrives) {
   for (int i = 0; i < 30; ++i) {
     const auto client = rig.connect();
     lock(client->stub(), LockOwner::session);
-    EXPECT_EQ(code_of_lock([&] { return client->call("fail", {std::string("invalid endpoint")}); }),
+    EXPECT_EQ(code_of([&] { return client->call("fail", {std::string("invalid endpoint")}); }),
               ErrorCode::invalid_endpoint)
         << i;
     EXPECT_TRUE(is_released());
@@ -202,7 +193,7 @@ TEST_F(FarLocksTest, MonitorsKeepOutAllOthers) {
   EXPECT_EQ(use(one), ErrorCode::none);
   EXPECT_EQ(use(two), ErrorCode::invalid_operation);
   EXPECT_EQ(use(near), ErrorCode::invalid_operation);
-  EXPECT_EQ(code_of_lock([&] {
+  EXPECT_EQ(code_of([&] {
               enter_monitor(two->stub(), milliseconds(50));
               return 0;
             }),
@@ -238,7 +229,7 @@ TEST(FarLockRights, AreThoseOfTheExportFile) {
           "[[service.user]]\nbroker = \"hub\"\nservice = \"operator\"\npassword_file = "
           "\"secret\"\n");
   const auto far = rig.connect();
-  EXPECT_EQ(code_of_lock([&] {
+  EXPECT_EQ(code_of([&] {
               lock(far->stub());
               return 0;
             }),
@@ -251,7 +242,7 @@ TEST(FarLockRights, AreThoseOfTheUserAtTheRobot) {
           "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"lock\"]\n");
   const auto far = rig.connect();
   // The user `gateway` has no privilege to lock.
-  EXPECT_EQ(code_of_lock([&] {
+  EXPECT_EQ(code_of([&] {
               lock(far->stub());
               return 0;
             }),
@@ -266,7 +257,7 @@ TEST(FarLockOperations, HaveNames) {
         Operation::enter_monitor, Operation::go_on_entering, Operation::exit_monitor}) {
     EXPECT_EQ(lock_operation(lock_operation_name(operation)), operation);
   }
-  EXPECT_EQ(code_of_lock([] { return lock_operation("break"); }), ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of([] { return lock_operation("break"); }), ErrorCode::invalid_argument);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace rr::gateway {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::code_of;
 using testing::comes_true;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -44,16 +45,6 @@ VarStringMap password(const std::string& text) { return {{"password", VarValue(t
 
 ConnectOptions as(const std::string& user, const std::string& text) {
   return {.username = user, .credentials = password(text)};
-}
-
-template <class Call>
-ErrorCode code_of_login(Call call) {
-  try {
-    static_cast<void>(call());
-    return ErrorCode::none;
-  } catch (const Error& error) {
-    return error.code();
-  }
 }
 
 std::string name_at_robot(const dynamic::Client& client) { return client->call("whoami").text(); }
@@ -83,24 +74,24 @@ TEST_F(FarLogins, EachClientIsItsUserAtTheRobot) {
 TEST_F(FarLogins, WithoutOneNobodyGetsIn) {
   const auto one = alice();  // so that the service is there
   const auto refused = ErrorCode::authentication_error;
-  EXPECT_EQ(code_of_login([&] { return rig.connect_once(); }), refused);
-  EXPECT_EQ(code_of_login([&] { return rig.connect_once(as("alice", "builder")); }), refused);
+  EXPECT_EQ(code_of([&] { return rig.connect_once(); }), refused);
+  EXPECT_EQ(code_of([&] { return rig.connect_once(as("alice", "builder")); }), refused);
   // The robot's users are none of the gateway's.
-  EXPECT_EQ(code_of_login([&] { return rig.connect_once(Rig::login()); }), refused);
+  EXPECT_EQ(code_of([&] { return rig.connect_once(Rig::login()); }), refused);
 }
 
 TEST_F(FarLogins, AClientMayBecomeAnotherUser) {
   auto client = alice();
   lock(client->stub(), LockOwner::session);
   const auto other = bob();
-  EXPECT_EQ(code_of_login([&] { return other->get("speed"); }), ErrorCode::object_locked_error);
+  EXPECT_EQ(code_of([&] { return other->get("speed"); }), ErrorCode::object_locked_error);
   client.authenticate("bob", password("builder"));
   EXPECT_EQ(name_at_robot(client), "gateway");
   // The session of the user before has ended, and its lock with it.
-  EXPECT_TRUE(comes_true(
-      [&] { return code_of_login([&] { return other->get("speed"); }) == ErrorCode::none; }));
+  EXPECT_TRUE(
+      comes_true([&] { return code_of([&] { return other->get("speed"); }) == ErrorCode::none; }));
   client.logout();
-  EXPECT_EQ(code_of_login([&] { return client->get("speed"); }), ErrorCode::authentication_error);
+  EXPECT_EQ(code_of([&] { return client->get("speed"); }), ErrorCode::authentication_error);
   client.authenticate("alice", password("wonder"));
   EXPECT_EQ(name_at_robot(client), "operator");
 }
@@ -111,7 +102,7 @@ TEST_F(FarLogins, LocksOfAUserAreForAllItsClients) {
   const auto other = bob();
   lock(one->stub());
   EXPECT_EQ(same->get("speed").as<double>(), 0.5);
-  EXPECT_EQ(code_of_login([&] { return other->get("speed"); }), ErrorCode::object_locked_error);
+  EXPECT_EQ(code_of([&] { return other->get("speed"); }), ErrorCode::object_locked_error);
   unlock(same->stub());
   EXPECT_EQ(other->get("speed").as<double>(), 0.5);
 }
@@ -138,14 +129,14 @@ TEST_F(FarLogins, MistakesInFilesAreToldAtTheStart) {
   rig.stop_server();
   const std::string good = rig.served.users_file;
   rig.served.users_file = rig.write_file("nobody", "alice\n");
-  EXPECT_EQ(code_of_login([&] {
+  EXPECT_EQ(code_of([&] {
               rig.start_server();
               return 0;
             }),
             ErrorCode::invalid_configuration);
   rig.served.users_file = good;
   rig.served.rights_file = rig.write_file("rights", "user:alice\n");
-  EXPECT_EQ(code_of_login([&] {
+  EXPECT_EQ(code_of([&] {
               rig.start_server();
               return 0;
             }),
@@ -190,7 +181,7 @@ class FarSessionsOfUsers : public ::testing::Test {
   }
   FarCalls::Done note(const std::string& name) {
     return [this, name](const std::exception_ptr& error, const Message&) {
-      const bool is_refused = code_of_login([&] {
+      const bool is_refused = code_of([&] {
                                 if (error) std::rethrow_exception(error);
                                 return 0;
                               }) == ErrorCode::authentication_error;

@@ -18,23 +18,13 @@ namespace rr::gateway {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::code_of;
 using testing::comes_true;
 using testing::Faults;
 using testing::Kept;
 using testing::MemoryBroker;
 using testing::Rig;
 using testing::value_comes;
-
-template <class Call>
-ErrorCode code_of(Call call, std::string* text = nullptr) {
-  try {
-    static_cast<void>(call());
-  } catch (const Error& error) {
-    if (text != nullptr) *text = error.what();
-    return error.code();
-  }
-  return ErrorCode::none;
-}
 
 class Gateways : public ::testing::Test {
  protected:

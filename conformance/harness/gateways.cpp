@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/harness/gateways.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <set>
@@ -105,6 +106,9 @@ void Gateways::find_services(const Captures& captures, const Scenario& scenario)
 // Of a service that is served without a client in this scenario they are those of other scenarios:
 // the robot's gateway needs one.
 void Gateways::find_logins(const Captures& captures, const Scenario& scenario) {
+  const bool has_users =
+      std::ranges::any_of(services_, [](const auto& each) { return each.second; });
+  if (!has_users) return;
   add_logins(scenario);
   for (const Scenario& other : captures.scenarios) {
     if (logins_.empty()) add_logins(other);

@@ -4,11 +4,26 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "rr/error.hpp"
+
 namespace rr::gateway::testing {
+
+/// The code of the error that a call throws, and its text; none when it throws nothing.
+template <class Call>
+ErrorCode code_of(Call call, std::string* text = nullptr) {
+  try {
+    static_cast<void>(call());
+  } catch (const Error& error) {
+    if (text != nullptr) *text = error.what();
+    return error.code();
+  }
+  return ErrorCode::none;
+}
 
 /// True as soon as `condition` is, false after half a minute.
 template <class Condition>

@@ -193,6 +193,9 @@
 %! count = 0;
 %! for i = 1:300
 %!   count = count + RobotRaconteur.ServeFor(0.1);
+%!   if ~exist(report, 'file')
+%!     continue
+%!   end
 %!   text = fileread(report);
 %!   if strfind(text, 'end')
 %!     break

@@ -7,7 +7,7 @@ trap '[ -z "$service" ] || kill "$service" 2>/dev/null || true; rm -rf "$work"' 
 
 start_service() {
   : > "$work/service"
-  "$1" --port 0 --seconds 390 > "$work/service" &
+  "$1" --port 0 --seconds 1500 > "$work/service" &
   service=$!
   for _ in $(seq 100); do
     grep -q '^ready: ' "$work/service" && break
