@@ -146,9 +146,8 @@ void Session::finish(End end) {
     case End::node:
       break;
   }
-  // By its own side, or not.
-  const bool is_closed_here = end == End::close || end == End::node;
-  expect_the_end(is_closed_here ? ErrorCode::invalid_operation : ErrorCode::connection_error);
+  const bool is_lost = end == End::cut || end == End::reset;
+  expect_the_end(is_lost ? ErrorCode::connection_error : ErrorCode::invalid_operation);
   is_companion_ending_ = true;
   if (companion_.joinable()) {
     const Doing doing(watched_, "waiting for the second thread");
@@ -167,7 +166,7 @@ void Session::expect_the_end(ErrorCode why) {
     bench_->mix(1, 2);
     context_.lines.fault(name_ + ": a call is answered after the end");
   } catch (const Error& error) {
-    // What this side ends, the other may have lost a moment before.
+    // What one side ends, the other may have lost a moment before.
     if (error.code() != why && error.code() != ErrorCode::connection_error) {
       context_.lines.fault(name_ + ": a call after the end: " + error.what());
     }
