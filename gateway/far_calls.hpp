@@ -25,6 +25,9 @@ struct FarRequest {
   std::string member;  ///< empty for Verb::object
   Bytes payload{};
   Properties properties{};
+  /// The number of the login at this gateway that the request belongs to; 0 for any. See
+  /// FarSessions::login_of().
+  std::uint64_t login = 0;
 };
 
 /// Requests to a robot over a broker: repeated until there is an answer or the time is over. All

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gateway/far_calls.hpp"
+#include "gateway/far_packets.hpp"
 #include "gateway/far_sessions.hpp"
 #include "gateway/outbox.hpp"
 #include "gateway/testing/memory_broker.hpp"
@@ -188,15 +189,27 @@ class FarSessionsOfUsers : public ::testing::Test {
       ends.add(name + (is_refused ? " is refused" : " has ended"));
     };
   }
-  /// What was sent since the last look: the operation and the user of each message.
+  /// The robot's gateway does what it was asked for in the last message.
+  void answer() {
+    on_worker([this] { calls->take({.correlation = last.correlation}); });
+  }
+  std::shared_ptr<FarPackets> pipe() {
+    return std::make_shared<FarPackets>(sessions, 1, FarRequest{address, Verb::get, "", "log"},
+                                        dynamic::ValueType::parse("double"), FarPackets::Limits(),
+                                        [this](const std::string& reason) { ends.add(reason); });
+  }
+  /// What was sent since the last look: the operation, or how many packets, and the user of each
+  /// message.
   std::vector<std::string> sent() {
     std::vector<std::string> texts;
     on_worker([&] {
       outbox.pump(carrier, [](const Message&) {});
       for (const Message& message : carrier.sent) {
-        texts.push_back(std::string(message.find("op").value_or("?")) + " " +
+        const auto what = message.find("op");
+        texts.push_back(std::string(what ? *what : message.find("count").value_or("?")) + " " +
                         std::string(message.find("client-user").value_or("-")));
         names.emplace_back(message.find("session").value_or(""));
+        last = message;
       }
       carrier.sent.clear();
     });
@@ -216,6 +229,7 @@ class FarSessionsOfUsers : public ::testing::Test {
       calls, address, FarSessions::Limits(), [](std::uint32_t, const std::string&) {});
   testing::Kept<std::string> ends;
   std::vector<std::string> names;  // of sessions, of all that was sent
+  Message last;
 };
 
 TEST_F(FarSessionsOfUsers, ASessionIsOpenedForTheUserOfItsFirstRequest) {
@@ -240,6 +254,57 @@ TEST_F(FarSessionsOfUsers, WhatWaitsForASessionIsNotDoneAsAnotherUser) {
   EXPECT_EQ(names[0], names[1]);
   EXPECT_NE(names[0], names[2]);
   EXPECT_EQ(ends.size(), 2U);
+}
+
+TEST_F(FarSessionsOfUsers, PacketsThatWaitAreNotSentAsAnotherUser) {
+  sessions->require();
+  sessions->set_user(1, "alice");
+  const auto packets = pipe();
+  packets->add(1.0);
+  EXPECT_THAT(sent(), ElementsAre("open alice"));
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  packets->add(2.0);
+  packets->add(3.0);
+  sessions->set_user(1, "bob");
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("end -"));
+  EXPECT_THAT(ends.items(), ElementsAre("the client's user has changed"));
+  packets->add(4.0);
+  EXPECT_THAT(sent(), IsEmpty());
+}
+
+TEST_F(FarSessionsOfUsers, PacketsOfTwoUsersDoNotTravelTogether) {
+  sessions->require();
+  sessions->set_user(1, "alice");
+  const auto packets = pipe();
+  packets->add(1.0);
+  EXPECT_THAT(sent(), ElementsAre("open alice"));
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  packets->add(2.0);
+  sessions->set_user(1, "bob");
+  packets->add(3.0);
+  EXPECT_THAT(ends.items(), ElementsAre("packets of another user wait for the robot"));
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("end -"));
+}
+
+TEST_F(FarSessionsOfUsers, PacketsAfterALoginAreOfTheNewUser) {
+  sessions->require();
+  sessions->set_user(1, "alice");
+  const auto packets = pipe();
+  packets->add(1.0);
+  EXPECT_THAT(sent(), ElementsAre("open alice"));
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  answer();
+  sessions->set_user(1, "bob");
+  packets->add(2.0);
+  EXPECT_THAT(sent(), ElementsAre("end -", "open bob"));
+  answer();
+  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  EXPECT_EQ(ends.size(), 0U);
 }
 
 TEST_F(FarSessionsOfUsers, AClientWithoutAUserSaysNone) {

@@ -24,17 +24,22 @@ FarPackets::FarPackets(std::shared_ptr<FarSessions> sessions, std::uint32_t clie
 
 void FarPackets::add(const dynamic::Value& packet) {
   Bytes bytes = encode_element(type_, packet);
-  bool is_full = false;
+  const std::uint64_t login = sessions_->login_of(client_);
+  const char* fault = nullptr;
   {
     const MutexLock lock(mutex_);
     if (has_ended_ || has_failed_) return;
+    if (!waiting_.empty() && login != login_) fault = "packets of another user wait for the robot";
+    login_ = login;
     bytes_ += bytes.size();
     waiting_.push_back(std::move(bytes));
-    is_full = bytes_ > limits_.waiting_bytes;
-    if (!is_full && std::exchange(is_asking_, true)) return;
+    if (bytes_ > limits_.waiting_bytes) {
+      fault = "more packets wait for the robot than the gateway keeps";
+    }
+    if (fault == nullptr && std::exchange(is_asking_, true)) return;
   }
-  if (is_full) {
-    fail("more packets wait for the robot than the gateway keeps");
+  if (fault != nullptr) {
+    fail(fault);
   } else {
     send_next();
   }
@@ -65,6 +70,7 @@ FarRequest FarPackets::next_request() {
     request.properties.emplace_back("end", "close");
   } else {
     request.properties.emplace_back("count", std::to_string(count));
+    request.login = login_;
   }
   return request;
 }

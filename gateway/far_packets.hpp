@@ -14,7 +14,8 @@
 namespace rr::gateway {
 
 /// Packets that a client sends to a robot, from one endpoint: each once, in order. As many as wait
-/// travel in one request, and the next request goes when that one is answered. Any thread.
+/// travel in one request, and the next request goes when that one is answered. Packets that still
+/// wait when the client logs in as another user are lost. Any thread.
 class FarPackets : public std::enable_shared_from_this<FarPackets> {
  public:
   /// What may wait for the robot.
@@ -50,6 +51,7 @@ class FarPackets : public std::enable_shared_from_this<FarPackets> {
   Mutex mutex_;
   std::deque<Bytes> waiting_ RR_GUARDED_BY(mutex_);
   std::size_t bytes_ RR_GUARDED_BY(mutex_) = 0;
+  std::uint64_t login_ RR_GUARDED_BY(mutex_) = 0;  // all of them are from
   bool is_asking_ RR_GUARDED_BY(mutex_) = false;
   bool is_closing_ RR_GUARDED_BY(mutex_) = false;  // the robot's endpoint
   bool has_ended_ RR_GUARDED_BY(mutex_) = false;   // nothing is added any more

@@ -16,6 +16,10 @@ std::exception_ptr client_has_gone() {
   return error_pointer(ErrorCode::connection_error, "the client has gone");
 }
 
+std::exception_ptr user_has_changed() {
+  return error_pointer(ErrorCode::authentication_error, "the client's user has changed");
+}
+
 void ignore(const std::exception_ptr&, const Message&) {}
 
 }  // namespace
@@ -43,10 +47,16 @@ void FarSessions::set_user(std::uint32_t client, const std::string& user) {
     const MutexLock lock(mutex_);
     const auto found = sessions_.find(client);
     if (found == sessions_.end() || found->second.user == user) return;
-    before = std::exchange(found->second, Session{.user = user});
+    before = std::exchange(found->second, Session{.user = user, .login = found->second.login + 1});
     if (before.state != State::none) --begun_;
   }
-  give_up(before, error_pointer(ErrorCode::authentication_error, "the client's user has changed"));
+  give_up(before, user_has_changed());
+}
+
+std::uint64_t FarSessions::login_of(std::uint32_t client) const {
+  const MutexLock lock(mutex_);
+  const auto found = sessions_.find(client);
+  return found == sessions_.end() ? 0 : found->second.login;
 }
 
 void FarSessions::end(std::uint32_t client) {
@@ -115,8 +125,12 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
     const auto found = sessions_.find(client);
     if (found != sessions_.end()) {
       Session& session = found->second;
-      if (is_needed && session.state == State::none) opens = begin_opening(session, refusal);
-      is_waiting = session.state == State::opening && has_room(session, refusal);
+      if (wanted.login != 0 && wanted.login != session.login) {
+        refusal = user_has_changed();
+      } else if (is_needed && session.state == State::none) {
+        opens = begin_opening(session, refusal);
+      }
+      is_waiting = !refusal && session.state == State::opening && has_room(session, refusal);
       if (is_waiting) session.waiting.push_back({std::move(wanted), std::move(done)});
       name = session.name;
       if (opens) user = session.user;
@@ -177,7 +191,7 @@ void FarSessions::opened(std::uint32_t client, const std::string& name,
     Session& session = found->second;
     waiting.swap(session.waiting);
     if (error) {
-      session = {.user = session.user};
+      session = {.user = session.user, .login = session.login};
       --begun_;
     } else {
       session.state = State::open;

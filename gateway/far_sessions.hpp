@@ -41,6 +41,9 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   /// It has logged in here as this user, for whom its session at the robot is from then on; empty
   /// for none. A session of another user ends.
   void set_user(std::uint32_t client, const std::string& user);
+  /// Which login of the client is the last one: 1 until its user changes. 0 when it has gone. A
+  /// request with another number is refused with ErrorCode::authentication_error.
+  [[nodiscard]] std::uint64_t login_of(std::uint32_t client) const;
   /// It has gone: its session at the robot ends.
   void end(std::uint32_t client);
   /// All have gone.
@@ -71,7 +74,8 @@ class FarSessions : public std::enable_shared_from_this<FarSessions> {
   };
   struct Session {
     State state = State::none;
-    std::string user{};  // of this gateway
+    std::string user{};       // of this gateway
+    std::uint64_t login = 1;  // of the client
     std::string name{};
     std::vector<Waiting> waiting{};
   };
