@@ -191,7 +191,9 @@ class FarSessionsOfUsers : public ::testing::Test {
   }
   /// The robot's gateway does what it was asked for in the last message.
   void answer() {
-    on_worker([this] { calls->take({.correlation = last.correlation}); });
+    Message done;
+    done.correlation = last.correlation;
+    on_worker([&] { calls->take(done); });
   }
   std::shared_ptr<FarPackets> pipe() {
     return std::make_shared<FarPackets>(sessions, 1, FarRequest{address, Verb::get, "", "log"},
@@ -269,7 +271,8 @@ TEST_F(FarSessionsOfUsers, PacketsThatWaitAreNotSentAsAnotherUser) {
   sessions->set_user(1, "bob");
   answer();
   EXPECT_THAT(sent(), ElementsAre("end -"));
-  EXPECT_THAT(ends.items(), ElementsAre("the client's user has changed"));
+  EXPECT_THAT(ends.items(),
+              ElementsAre("RobotRaconteur.AuthenticationError: the client's user has changed"));
   packets->add(4.0);
   EXPECT_THAT(sent(), IsEmpty());
 }
