@@ -78,13 +78,17 @@ class Layout {
   }
 
   [[nodiscard]] bool is_of_several_lines(const Line& line) const {
-    return text_.find('\n', line.begin) + 1 < line.end;
+    return text_.substr(line.begin, line.end - line.begin - 1).find('\n') != text_.npos;
   }
 
   // Of several blank lines one is kept; none at the ends of the file and of a block.
   std::size_t lay_out_blank_lines(std::size_t begin) {
     std::size_t end = begin;
     while (end < lines_.size() && lines_[end].kind == LineKind::blank) ++end;
+    // Bytes that are a mistake here would be the mark of the file in its first line.
+    const bool would_be_mark = begin == 0 && end < lines_.size() &&
+                               text_.substr(lines_[end].begin).starts_with(byte_order_mark);
+    if (would_be_mark) return end;
     const bool is_at_an_end = begin == 0 || end == lines_.size() || is_header(lines_[begin - 1]) ||
                               is_block_end(lines_[end]);
     std::size_t first_needless = begin;
@@ -131,7 +135,8 @@ class Layout {
                                    [](const Line& line) { return line.kind != LineKind::blank; });
     if (last == lines_.rend() || last->kind == LineKind::unread) return;
     const std::uint32_t end = last->end;
-    if (text_[end - 1] == '\n') return;
+    // A carriage return alone is a mistake, and none any more with a line feed behind it.
+    if (text_[end - 1] == '\n' || text_[end - 1] == '\r') return;
     const bool is_first = last + 1 == lines_.rend();
     const std::string_view usual = is_first ? "\n" : line_end(*(last + 1));
     put(end, end, std::string(usual), Reason::missing_line_end, text_, edits_);

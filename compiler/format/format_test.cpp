@@ -152,6 +152,18 @@ TEST(Format, ACarriageReturnInsideOfACommentIsNotMadeALineEnd) {
   EXPECT_EQ(member("# a\r \nproperty double x"), "    # a\r \n    property double x");
 }
 
+TEST(Format, ACarriageReturnAtTheEndOfTheFileIsNotMadeALineEnd) {
+  EXPECT_EQ(formatted("service a\r\n# b\r"), "service a\r\n# b\r");
+}
+
+TEST(Format, BlanksBehindACommentGoInALineWithoutEnd) {
+  EXPECT_EQ(formatted("service a\n# b  "), "service a\n# b\n");
+}
+
+TEST(Format, BytesBelowBlankLinesAreNotMadeAByteOrderMark) {
+  EXPECT_EQ(formatted("\n\n\xEF\xBB\xBF# a\nservice a\n"), "\n\n\xEF\xBB\xBF# a\nservice a\n");
+}
+
 TEST(Format, ABlockWithoutEndDoesNotIndentTheNextOne) {
   EXPECT_EQ(formatted("service a\n\nstruct S\nfield double x\n\n# of T\nstruct T\nfield double y\n"
                       "end\n"),

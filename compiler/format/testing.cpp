@@ -51,6 +51,12 @@ void keep_line(const Formatted& from, const ast::Line& line, Formatted& to) {
   }
 }
 
+std::string joined(const std::vector<std::string>& texts) {
+  std::string result;
+  for (const std::string& text : texts) result += (result.empty() ? "" : " ") + text;
+  return result;
+}
+
 }  // namespace
 
 Formatted::Formatted(std::string written) : text(std::move(written)) {
@@ -99,6 +105,7 @@ std::string without_blanks(std::string_view text) {
 
 std::size_t comment_lines(std::string_view text) {
   std::size_t count = 0;
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     if (trimmed(text.substr(begin, end - begin)).starts_with('#')) ++count;
@@ -118,7 +125,9 @@ std::string fault_of_formatting(const Formatted& before) {
   if (after.comments != before.comments) return "a comment changed";
   if (after.tokens != before.tokens) return "tokens changed";
   if (after.unread != before.unread) return "an unread line changed";
-  if (after.codes != before.codes) return "diagnostics changed";
+  if (after.codes != before.codes) {
+    return "diagnostics changed: " + joined(before.codes) + " before, " + joined(after.codes);
+  }
   return "";
 }
 
