@@ -52,6 +52,35 @@ for line in '^first +[0-9]+ s  ok$' '^second +[0-9]+ s  ok$' '^third +[0-9]+ s  
   grep -qE "$line" <<<"$said" || complain "parts beside others: no $line in: $said"
 done
 
+# A run that goes on leaves out what has passed on the same tree, and nothing else.
+run_again() {
+  (
+    source tools/setup.sh
+    top=$work/tree
+    parts_go_on=1
+    parts_skip_passed=1
+    note_parts
+    part "asan: build" true
+    part "good" echo "good runs"
+    part "bad" false
+    print_parts
+  )
+}
+if git --version >/dev/null 2>&1; then
+  git init -q "$work/tree"
+  echo /build/ >"$work/tree/.gitignore"
+  said=$(run_again)
+  grep -q '^good runs$' <<<"$said" || complain "the first run: $said"
+  said=$(run_again)
+  ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again: $said"
+  for line in '^good +[0-9]+ s  ok at [0-9]+-[0-9-]+ [0-9:]+$' '^asan: build +[0-9]+ s  ok$' '^bad +[0-9]+ s  FAILED$'; do
+    grep -qE "$line" <<<"$said" || complain "a run that goes on: no $line in: $said"
+  done
+  echo changed >"$work/tree/source"
+  said=$(run_again)
+  grep -q '^good runs$' <<<"$said" || complain "what has passed before a change does not run again: $said"
+fi
+
 # Files of other tools have a copy of the version.
 tools/version --check || status=1
 exit $status

@@ -148,20 +148,51 @@ parts_go_on=
 failed_parts=0
 script_start=$SECONDS
 part() {
-  local name=$1 start=$SECONDS status=0
+  local name=$1 start=$SECONDS status=0 row
   [[ $name =~ $parts_wanted ]] || return 0
   shift
+  if row=$(passed_before "$name"); then
+    part_rows+=("$row")
+    return
+  fi
   say "[$(date +%H:%M:%S)] $name"
   "$@" || status=$?
-  local row
   printf -v row '%-34s %5d s  %s' "$name" $((SECONDS - start)) \
     "$([ $status = 0 ] && echo ok || echo FAILED)"
   part_rows+=("$row")
-  [ $status = 0 ] && return
+  if [ $status = 0 ]; then
+    note_passed "$name" "$row"
+    return
+  fi
   failed_parts=$((failed_parts + 1))
   [ "$parts_go_on" ] || exit $status
 }
 end_parts() { [ $failed_parts = 0 ] || exit 1; }
+
+# For a run that was stopped and goes on: parts that have passed are noted in build/log/passed, each with the hash of the tree
+# as it was, whether committed or not. Where parts_skip_passed says so, part leaves out what has passed on this very tree, and
+# the table says when that was. What makes others possible always runs: packages, configurations and builds.
+parts_skip_passed=
+parts_tree=
+note_parts() {
+  parts_tree=$(
+    export GIT_INDEX_FILE
+    GIT_INDEX_FILE=$(mktemp -u)
+    git -C "$top" add --all 2>/dev/null && git -C "$top" write-tree
+    rm -f "$GIT_INDEX_FILE"
+  ) || parts_tree=
+  [ "$parts_tree" ] || [ ! "$parts_skip_passed" ] || fail "--go-on needs the tree in git, which tells whether it is the same still"
+}
+note_passed() {
+  [ "$parts_tree" ] || return 0
+  mkdir -p "$top/build/log/passed"
+  printf '%s\n%s at %s\n' "$parts_tree" "$2" "$(date '+%F %H:%M')" >"$top/build/log/passed/${1//[^A-Za-z0-9]/_}"
+}
+passed_before() {
+  local file=$top/build/log/passed/${1//[^A-Za-z0-9]/_}
+  [ "$parts_skip_passed" ] && [ -f "$file" ] && [[ ! $1 =~ ^(packages|later Boost)$|(configure|build)$ ]] &&
+    [ "$(head -n 1 "$file")" = "$parts_tree" ] && tail -n 1 "$file"
+}
 
 # beside FUNCTION: runs the parts of FUNCTION while the parts that follow run, until join_beside; what it says is in
 # build/log/beside.log until then. For what needs one processor most of the time.
