@@ -148,6 +148,7 @@ bool SharedCarrier::pass_slots(const SlotWriter& slots) {
 }
 
 std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id) {
+  if (is_server_ || !has_slots_) return nullptr;
   for (int left = most_looks; left != 0; --left) {
     if (auto slots = passed_.take(id)) return slots;
     must_look_ = Look::none;

@@ -64,7 +64,8 @@ class SharedCarrier final : public Carrier {
   /// afterwards. False when the socket does not take it, or about PassedSlots::most are in it that
   /// the client has not received.
   [[nodiscard]] bool pass_slots(const SlotWriter& slots);
-  /// By the client, with the read lease: takes one that the server has passed; null for none.
+  /// By the client, with the read lease: takes one that the server has passed; null for none, and
+  /// for a server.
   std::unique_ptr<SlotReader> take_slots(std::uint64_t id);
 
   /// Any thread: the same for the other side, which may sleep where it does not see the socket's

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +31,11 @@ using rr::testing::TestReceiver;
 
 constexpr int patience = 20'000;  // milliseconds
 const std::string place = "the test";
+
+std::ptrdiff_t open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return std::distance(begin(all), end(all));
+}
 
 // A server's connection, and the client's end of its socket.
 struct Sharing {
@@ -217,6 +224,7 @@ TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {
   const auto client = open();
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
+  const std::ptrdiff_t before = open_descriptors();
   constexpr std::array<std::byte, 1> bell{};
   for (int i = 0; i < 100; ++i) {
     platform::send_with_handle(sockets_.own(), bell, slots->handle());
@@ -225,6 +233,7 @@ TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {
   const platform::Buffer piece{asked.data(), asked.size()};
   client->send({&piece, 1});
   EXPECT_TRUE(comes_true([&] { return receiver_->handled == 1; }));
+  EXPECT_EQ(open_descriptors(), before);
   EXPECT_EQ(server_->take_slots(7), nullptr);
 }
 

@@ -117,13 +117,14 @@ TEST(ServiceSubscriptions, AreToldWhatIsNoUrl) {
 TEST(ServiceSubscriptions, WaitForAServiceThatStartsLate) {
   Server server("counter", counter("late"));
   server.stop();
+  const std::string url = server.url();
   Node node;
-  auto subscription = node.subscribe(server.url(), quick());
+  auto subscription = node.subscribe(url, quick());
   Codes codes;
   std::atomic<bool> has_urls{false};
   const auto failed =
       subscription.on_failed([&](const std::vector<std::string>& urls, const Error& error) {
-        has_urls = urls == std::vector{server.url()};
+        has_urls = urls == std::vector{url};
         codes.add(error);
       });
   EXPECT_TRUE(eventually([&] { return codes.all().size() >= 2; }));
