@@ -29,7 +29,7 @@ std::string definition_with_callback() {
 }
 
 constexpr const char* with_callback =
-    "session_limit = \"1 s\"\n"
+    "session_limit = \"4 s\"\n"
     "[[service.allow]]\nmembers = [\"ask\", \"call_ask\", \"call_hidden\"]\naccess = [\"call\"]\n";
 
 template <class Call>

@@ -21,8 +21,10 @@ using testing::comes_true;
 using testing::MemoryBroker;
 using testing::Rig;
 
+// The limit is longer than what a slow machine and a broker that drops messages make of the 300 ms
+// between two of them.
 constexpr const char* with_locks =
-    "session_limit = \"1 s\"\n"
+    "session_limit = \"4 s\"\n"
     "[[service.user]]\nbroker = \"hub\"\nservice = \"operator\"\npassword_file = \"secret\"\n"
     "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"lock\"]\n"
     "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"*\"]\naccess = [\"lock\"]\n";
@@ -143,7 +145,7 @@ TEST_F(FarLocksTest, LastWhileTheLinkIsThere) {
   const std::string about_sessions = "rr/hall/robot/bench/$session/hub";
   // For longer than the limit, in which several messages say that the session is in use.
   const std::size_t before = broker.published(about_sessions);
-  ASSERT_TRUE(comes_true([&] { return broker.published(about_sessions) >= before + 6; }));
+  ASSERT_TRUE(comes_true([&] { return broker.published(about_sessions) >= before + 15; }));
   EXPECT_EQ(use(near), ErrorCode::object_locked_error);
   EXPECT_EQ(use(one), ErrorCode::none);
 }
