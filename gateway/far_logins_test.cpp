@@ -200,6 +200,17 @@ class FarSessionsOfUsers : public ::testing::Test {
                                         dynamic::ValueType::parse("double"), FarPackets::Limits(),
                                         [this](const std::string& reason) { ends.add(reason); });
   }
+  /// The first packet of alice is on its way to the robot.
+  std::shared_ptr<FarPackets> pipe_of_alice() {
+    sessions->require();
+    sessions->set_user(1, "alice");
+    auto packets = pipe();
+    packets->add(1.0);
+    EXPECT_THAT(sent(), ElementsAre("open alice"));
+    answer();
+    EXPECT_THAT(sent(), ElementsAre("1 -"));
+    return packets;
+  }
   /// What was sent since the last look: the operation, or how many packets, and the user of each
   /// message.
   std::vector<std::string> sent() {
@@ -259,13 +270,7 @@ TEST_F(FarSessionsOfUsers, WhatWaitsForASessionIsNotDoneAsAnotherUser) {
 }
 
 TEST_F(FarSessionsOfUsers, PacketsThatWaitAreNotSentAsAnotherUser) {
-  sessions->require();
-  sessions->set_user(1, "alice");
-  const auto packets = pipe();
-  packets->add(1.0);
-  EXPECT_THAT(sent(), ElementsAre("open alice"));
-  answer();
-  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  const auto packets = pipe_of_alice();
   packets->add(2.0);
   packets->add(3.0);
   sessions->set_user(1, "bob");
@@ -278,13 +283,7 @@ TEST_F(FarSessionsOfUsers, PacketsThatWaitAreNotSentAsAnotherUser) {
 }
 
 TEST_F(FarSessionsOfUsers, PacketsOfTwoUsersDoNotTravelTogether) {
-  sessions->require();
-  sessions->set_user(1, "alice");
-  const auto packets = pipe();
-  packets->add(1.0);
-  EXPECT_THAT(sent(), ElementsAre("open alice"));
-  answer();
-  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  const auto packets = pipe_of_alice();
   packets->add(2.0);
   sessions->set_user(1, "bob");
   packets->add(3.0);
@@ -294,13 +293,7 @@ TEST_F(FarSessionsOfUsers, PacketsOfTwoUsersDoNotTravelTogether) {
 }
 
 TEST_F(FarSessionsOfUsers, PacketsAfterALoginAreOfTheNewUser) {
-  sessions->require();
-  sessions->set_user(1, "alice");
-  const auto packets = pipe();
-  packets->add(1.0);
-  EXPECT_THAT(sent(), ElementsAre("open alice"));
-  answer();
-  EXPECT_THAT(sent(), ElementsAre("1 -"));
+  const auto packets = pipe_of_alice();
   answer();
   sessions->set_user(1, "bob");
   packets->add(2.0);
