@@ -63,6 +63,7 @@ run_again() {
     part "asan: build" true
     part "good" echo "good runs"
     part "bad" false
+    part "changing" eval 'echo "changing runs"; echo more >>"$top/other"'
     print_parts
   )
 }
@@ -71,6 +72,10 @@ if git --version >/dev/null 2>&1; then
   echo /build/ >"$work/tree/.gitignore"
   said=$(run_again)
   grep -q '^good runs$' <<<"$said" || complain "the first run: $said"
+  rm "$work/tree/other"
+  said=$(run_again)
+  grep -q '^changing runs$' <<<"$said" || complain "what has passed on a tree that has changed meanwhile does not run again: $said"
+  rm "$work/tree/other"
   said=$(run_again)
   ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again: $said"
   for line in '^good +[0-9]+ s  ok at [0-9]+-[0-9-]+ [0-9:]+$' '^asan: build +[0-9]+ s  ok$' '^bad +[0-9]+ s  FAILED$'; do

@@ -174,17 +174,19 @@ end_parts() { [ $failed_parts = 0 ] || exit 1; }
 # the table says when that was. What makes others possible always runs: packages, configurations and builds.
 parts_skip_passed=
 parts_tree=
+tree_now() (
+  export GIT_INDEX_FILE
+  GIT_INDEX_FILE=$(mktemp -u)
+  git -C "$top" add --all 2>/dev/null && git -C "$top" write-tree
+  rm -f "$GIT_INDEX_FILE"
+)
 note_parts() {
-  parts_tree=$(
-    export GIT_INDEX_FILE
-    GIT_INDEX_FILE=$(mktemp -u)
-    git -C "$top" add --all 2>/dev/null && git -C "$top" write-tree
-    rm -f "$GIT_INDEX_FILE"
-  ) || parts_tree=
+  parts_tree=$(tree_now)
   [ "$parts_tree" ] || [ ! "$parts_skip_passed" ] || fail "--go-on needs the tree in git, which tells whether it is the same still"
 }
+# Of a tree that has changed while the part ran, nothing is known.
 note_passed() {
-  [ "$parts_tree" ] || return 0
+  [ "$parts_tree" ] && [ "$(tree_now)" = "$parts_tree" ] || return 0
   mkdir -p "$top/build/log/passed"
   printf '%s\n%s at %s\n' "$parts_tree" "$2" "$(date '+%F %H:%M')" >"$top/build/log/passed/${1//[^A-Za-z0-9]/_}"
 }
