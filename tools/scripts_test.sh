@@ -58,7 +58,7 @@ run_again() {
     source tools/setup.sh
     top=$work/tree
     parts_go_on=1
-    parts_skip_passed=1
+    parts_are_noted=1
     note_parts
     part "asan: build" true
     part "good" echo "good runs"
@@ -81,9 +81,15 @@ if git --version >/dev/null 2>&1; then
   for line in '^good +[0-9]+ s  ok at [0-9]+-[0-9-]+ [0-9:]+$' '^asan: build +[0-9]+ s  ok$' '^bad +[0-9]+ s  FAILED$'; do
     grep -qE "$line" <<<"$said" || complain "a run that goes on: no $line in: $said"
   done
+  rm "$work/tree/other"
+  echo told >"$work/tree/docs/project/page.md"
+  said=$(run_again)
+  ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again for a page of measurements: $said"
+  [ "$(grep -c ' good ' "$work/tree/docs/project/long_check.txt")" = 1 ] || complain "a part is noted more than once"
   echo changed >"$work/tree/source"
   said=$(run_again)
   grep -q '^good runs$' <<<"$said" || complain "what has passed before a change does not run again: $said"
+  [ "$(grep -c ' good ' "$work/tree/docs/project/long_check.txt")" = 1 ] || complain "parts of an older tree are kept"
 fi
 
 # Files of other tools have a copy of the version.

@@ -169,31 +169,44 @@ part() {
 }
 end_parts() { [ $failed_parts = 0 ] || exit 1; }
 
-# For a run that was stopped and goes on: parts that have passed are noted in build/log/passed, each with the hash of the tree
-# as it was, whether committed or not. Where parts_skip_passed says so, part leaves out what has passed on this very tree, and
-# the table says when that was. What makes others possible always runs: packages, configurations and builds.
-parts_skip_passed=
+# For a run that was stopped and goes on, on this machine or another: where parts_are_noted says so, parts that have passed are
+# noted in docs/project/long_check.txt, each with the hash of the tree as it was, whether committed or not; part leaves out
+# what has passed on this very tree, and the table says when that was. What makes others possible always runs: packages,
+# configurations and builds. Pages that tell of measurements are no part of that tree, or noting a run would begin a new one.
+parts_are_noted=
 parts_tree=
+noted_parts=docs/project/long_check.txt
 tree_now() (
   export GIT_INDEX_FILE
   GIT_INDEX_FILE=$(mktemp -u)
-  git -C "$top" add --all 2>/dev/null && git -C "$top" write-tree
+  cd "$top"
+  git add --all -- . ':!docs/project' ':!docs/status.md' 2>/dev/null && git write-tree
   rm -f "$GIT_INDEX_FILE"
 )
 note_parts() {
+  [ "$parts_are_noted" ] || return 0
   parts_tree=$(tree_now)
-  [ "$parts_tree" ] || [ ! "$parts_skip_passed" ] || fail "--go-on needs the tree in git, which tells whether it is the same still"
+  [ "$parts_tree" ] || fail "--go-on needs the tree in git, which tells whether it is the same still"
 }
-# Of a tree that has changed while the part ran, nothing is known.
+# Of a tree that has changed while the part ran, nothing is known. Rows of other trees go.
 note_passed() {
+  local file=$top/$noted_parts
   [ "$parts_tree" ] && [ "$(tree_now)" = "$parts_tree" ] || return 0
-  mkdir -p "$top/build/log/passed"
-  printf '%s\n%s at %s\n' "$parts_tree" "$2" "$(date '+%F %H:%M')" >"$top/build/log/passed/${1//[^A-Za-z0-9]/_}"
+  mkdir -p "$top/build/log" "${file%/*}"
+  (
+    flock 9
+    {
+      say "# Parts of ./check --long that have passed: hash of the tree without docs/project and docs/status.md, then the row."
+      sed "/^$parts_tree /!d" "$file" 2>/dev/null || true
+      say "$parts_tree $2 at $(date '+%F %H:%M')"
+    } >"$file.new"
+    mv "$file.new" "$file"
+  ) 9>"$top/build/log/noted.lock"
 }
 passed_before() {
-  local file=$top/build/log/passed/${1//[^A-Za-z0-9]/_}
-  [ "$parts_skip_passed" ] && [ -f "$file" ] && [[ ! $1 =~ ^(packages|later Boost)$|(configure|build)$ ]] &&
-    [ "$(head -n 1 "$file")" = "$parts_tree" ] && tail -n 1 "$file"
+  local row
+  [ "$parts_tree" ] && [[ ! $1 =~ ^(packages|later Boost)$|(configure|build)$ ]] &&
+    row=$(grep -F "$parts_tree $(printf '%-34s ' "$1")" "$top/$noted_parts" 2>/dev/null | tail -n 1) && say "${row#* }"
 }
 
 # beside FUNCTION: runs the parts of FUNCTION while the parts that follow run, until join_beside; what it says is in
