@@ -26,7 +26,7 @@ RR_API void rr_client_release(rr_client* client);
 /** Tells the service, waits for its answer for half a second at most, and ends the connection. Open
  * calls fail with RR_CONNECTION_ERROR. Nothing happens the second time. */
 RR_API void rr_client_close(rr_client* client);
-/** 0 once the session has ended, whoever ended it. */
+/** 0 once either side has ended the session. */
 RR_API int32_t rr_client_is_open(const rr_client* client);
 /** Ends all open calls with RR_OPERATION_CANCELLED. */
 RR_API void rr_client_cancel_calls(rr_client* client);
@@ -132,7 +132,7 @@ RR_API rr_status rr_object_exit_monitor(rr_object* object, const rr_call_options
 
 /** What is called for an event. Threads of the node. */
 typedef struct rr_event_handler {
-  size_t size;   /**< sizeof(rr_event_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_event_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** For each event, in order, one at a time for each session. `data` holds the arguments, and may
    * be retained. */
@@ -149,7 +149,7 @@ RR_API rr_status rr_event_subscribe(rr_object* object, rr_str member,
 
 /** The function of the client that a service may call. Threads of the node. */
 typedef struct rr_callback_handler {
-  size_t size;   /**< sizeof(rr_callback_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_callback_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** Several may run at once. The request's kind is RR_REQUEST_CALLBACK, and it belongs to the
    * function. */
@@ -255,7 +255,7 @@ typedef struct rr_piece rr_piece;
  * a multi-dimensional array. The functions end the transfer by anything but RR_OK, which is then
  * what fails. `offset` is where the piece's first item is among those of the part. */
 typedef struct rr_memory_pieces {
-  size_t size;   /**< sizeof(rr_memory_pieces), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_memory_pieces), set by the caller */
   void* context; /**< passed to the functions below */
   /** Needed to read: takes a piece that has come. */
   rr_status (*take)(void* context, uint64_t offset, const uint64_t* count, size_t dim_count,

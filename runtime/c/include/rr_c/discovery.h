@@ -22,7 +22,7 @@ enum {
 
 /** How a node announces itself. All zero but the size: the defaults. */
 typedef struct rr_announce_options {
-  size_t size;              /**< sizeof(rr_announce_options), set by whoever fills it in */
+  size_t size;              /**< sizeof(rr_announce_options), set by the caller */
   uint32_t networks;        /**< RR_NODE_LOCAL ...; 0: RR_LINK_LOCAL */
   uint32_t port;            /**< 0: 48653. Nodes find those with the same port only. */
   const rr_str* interfaces; /**< names of the interfaces to send from; none: all that are up */
@@ -40,7 +40,7 @@ RR_API void rr_discovery_stop_announcing(rr_node* node);
 
 /** What a node listens to, and what it keeps. All zero but the size: the defaults. */
 typedef struct rr_listen_options {
-  size_t size;              /**< sizeof(rr_listen_options), set by whoever fills it in */
+  size_t size;              /**< sizeof(rr_listen_options), set by the caller */
   uint32_t networks;        /**< these as in rr_announce_options */
   uint32_t port;            /**< as in rr_announce_options */
   const rr_str* interfaces; /**< as in rr_announce_options */
@@ -64,7 +64,7 @@ RR_API rr_status rr_discovery_request(rr_node* node, rr_error** error);
 
 /** A node that has announced itself. Nothing of it is proven. */
 typedef struct rr_detected_node {
-  size_t size;   /**< sizeof(rr_detected_node), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_detected_node), set by the caller */
   rr_node_id id; /**< as it says; zero for none */
   rr_str name;   /**< empty for none */
   const rr_str*
@@ -74,7 +74,7 @@ typedef struct rr_detected_node {
 
 /** A service that may be connected to, by what is known of it. */
 typedef struct rr_found_service {
-  size_t size;              /**< sizeof(rr_found_service), set by whoever fills it in */
+  size_t size;              /**< sizeof(rr_found_service), set by the caller */
   rr_str name;              /**< as it is registered */
   rr_node_id node;          /**< zero while unknown */
   rr_str node_name;         /**< empty for none, and while unknown */
@@ -113,7 +113,7 @@ RR_API rr_status rr_discovery_nodes(const rr_node* node, rr_detected_nodes** out
 
 /** What is called for nodes that come and go. Threads of the node, under no lock. */
 typedef struct rr_discovery_handler {
-  size_t size;   /**< sizeof(rr_discovery_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_discovery_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** One at a time, in order. Nodes that are known already come first. */
   void (*on_detected)(void* context, const rr_detected_node* node); /**< a node is new */
@@ -126,7 +126,7 @@ RR_API rr_status rr_discovery_watch(rr_node* node, const rr_discovery_handler* h
 
 /** How a search is made. All zero but the size: the defaults. */
 typedef struct rr_find_options {
-  size_t size;           /**< sizeof(rr_find_options), set by whoever fills it in */
+  size_t size;           /**< sizeof(rr_find_options), set by the caller */
   const rr_str* schemes; /**< `rr+tcp`, ...: URLs of others, and what has none left, are left out */
   size_t scheme_count;   /**< 0: all */
   int32_t wait_ms;    /**< nodes are asked, and given so long to answer; 0: what is known is used */

@@ -52,13 +52,13 @@ typedef struct rr_node_filter {
 
 /** All that is filled in must hold. */
 typedef struct rr_service_filter {
-  size_t size;                     /**< sizeof(rr_service_filter), set by whoever fills it in */
-  const rr_node_filter* nodes;     /**< one of these; the first that fits says who logs in */
-  size_t node_count;               /**< of `nodes`; 0: any node */
-  const rr_str* service_names;     /**< one of these */
-  size_t service_name_count;       /**< of `service_names`; 0: any */
-  const rr_str* transport_schemes; /**< `rr+tcp`, ...: URLs of others are not tried */
-  size_t transport_scheme_count;   /**< of `transport_schemes`; 0: all */
+  size_t size;                          /**< sizeof(rr_service_filter), set by the caller */
+  const rr_node_filter* nodes;          /**< one of these; the first that fits says who logs in */
+  size_t node_count;                    /**< of `nodes`; 0: any node */
+  const rr_str* service_names;          /**< one of these */
+  size_t service_name_count;            /**< of `service_names`; 0: any */
+  const rr_str* transport_schemes;      /**< `rr+tcp`, ...: URLs of others are not tried */
+  size_t transport_scheme_count;        /**< of `transport_schemes`; 0: all */
   const rr_attribute_group* attributes; /**< tests of attributes, by `attributes_match` */
   size_t attribute_count;               /**< of `attributes` */
   uint32_t attributes_match;            /**< RR_MATCH_...; default: ALL */

@@ -28,7 +28,7 @@ enum {
 
 /** Zero: as an rr::Node has it (runtime/cpp/include/rr/options.hpp). Times are milliseconds. */
 typedef struct rr_node_options {
-  size_t size; /**< sizeof(rr_node_options), set by whoever fills it in */
+  size_t size; /**< sizeof(rr_node_options), set by the caller */
   /** Of the node: letters, digits, underscores, points and hyphens, a letter first. Empty for none.
    */
   rr_str name;
@@ -96,18 +96,18 @@ typedef struct rr_client rr_client;
 
 /** How a client connects. All zero but the size: the defaults. */
 typedef struct rr_connect_options {
-  size_t size;     /**< sizeof(rr_connect_options), set by whoever fills it in */
+  size_t size;     /**< sizeof(rr_connect_options), set by the caller */
   rr_str username; /**< of a service that has users */
   rr_str password; /**< sent as the credential `password` */
   rr_elements
       credentials; /**< instead of the password, unless count is 0: a map of strings to varvalues */
   rr_str object_type;         /**< what the root must be or implement, qualified; empty: anything */
   int32_t request_timeout_ms; /**< of all calls; 0: the node's; RR_NO_LIMIT */
-  /** 1: logs in without TLS also at a URL that discovery has found, which anybody on the network
+  /** 1: logs in without TLS also at a URL that discovery has found, which any host on the network
    * can announce. URLs from elsewhere are not asked about (minor version 4). */
   uint32_t allow_clear_credentials;
   void* context; /**< passed to the functions below */
-  /** Once, when the session has ended, whoever ended it: RR_OPERATION_ABORTED for this side,
+  /** Once, when either side has ended the session: RR_OPERATION_ABORTED for this side,
    * RR_CONNECTION_ERROR for a lost connection or a service that sends this client away,
    * RR_SERVICE_NOT_FOUND for a service that was closed. Not when connecting has failed. */
   void (*on_closed)(void* context, const rr_error_info* why);

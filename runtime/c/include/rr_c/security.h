@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/** A node that is trusted for its certificate alone, whoever has signed it. */
+/** A node that is trusted for its certificate alone, signed by any authority. */
 typedef struct rr_pin {
   rr_node_id node; /**< whose certificate it is */
   rr_str sha256;   /**< of the certificate, 64 hexadecimal digits */
@@ -20,7 +20,7 @@ typedef struct rr_pin {
 /** As rr::TlsOptions (docs/explanation/security.md). Files are looked at again while the node runs.
  */
 typedef struct rr_tls_options {
-  size_t size;             /**< sizeof(rr_tls_options), set by whoever fills it in */
+  size_t size;             /**< sizeof(rr_tls_options), set by the caller */
   rr_str certificate_file; /**< PEM or .p12, of which the node takes its id; empty: none */
   rr_str key_file;         /**< PEM; empty: in the same file */
   /** certificates, PEM, of the authorities that are trusted, besides those that the environment
@@ -50,8 +50,8 @@ enum {
 /** Who connects, logs in, and is refused (docs/howto/access.md), as lines of JSON: to a file, to a
  * function, or to both. */
 typedef struct rr_audit_options {
-  size_t size;   /**< sizeof(rr_audit_options), set by whoever fills it in */
-  rr_str file;   /**< which nobody but its owner may read; empty: none */
+  size_t size;   /**< sizeof(rr_audit_options), set by the caller */
+  rr_str file;   /**< which only its owner may read; empty: none */
   void* context; /**< passed to the functions below */
   /** A line without its end. On any thread, for several events at once. */
   void (*on_event)(void* context, rr_str line);

@@ -85,7 +85,7 @@ typedef struct rr_service rr_service;
 
 /** What is called for an object of a service. Threads of the node. */
 typedef struct rr_object_handler {
-  size_t size;   /**< sizeof(rr_object_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_object_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** Needed. Properties, functions, objrefs, and peeks of wires where peeks are handled. For each
    * client one at a time, in the order of its requests; of different clients at once. The request
@@ -120,7 +120,7 @@ RR_API rr_status rr_request_answer_object(rr_request* request, rr_served_object*
 
 /** What is called for a generator that a service gives. Threads of the node. */
 typedef struct rr_generator_handler {
-  size_t size;   /**< sizeof(rr_generator_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_generator_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** One step at a time. The request's kind is RR_REQUEST_STEP; it belongs to the function. A step
    * that fails ends the generator. */
@@ -154,7 +154,7 @@ RR_API rr_status rr_served_callback_call_async(rr_served_object* object, uint32_
 
 /** What is called for a pipe of a served object. Threads of the node. */
 typedef struct rr_served_pipe_handler {
-  size_t size;   /**< sizeof(rr_served_pipe_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_served_pipe_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /* A client has connected an endpoint, which belongs to the function. Before the client has its
    * answer. */
@@ -181,7 +181,7 @@ RR_API rr_status rr_served_pipe_endpoints(rr_served_object* object, uint32_t mem
 
 /** What is called for a wire of a served object. Threads of the node. */
 typedef struct rr_served_wire_handler {
-  size_t size;   /**< sizeof(rr_served_wire_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_served_wire_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** A client has connected, and this is its end, which belongs to the function. */
   void (*on_connect)(void* context, rr_wire* wire);
@@ -216,7 +216,7 @@ RR_API rr_status rr_served_wire_connections(rr_served_object* object, uint32_t m
 /** A memory that a service offers. The functions may be called for several clients at once. A
  * status that is not RR_OK fails the request with that code. */
 typedef struct rr_memory_source {
-  size_t size;   /**< sizeof(rr_memory_source), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_memory_source), set by the caller */
   void* context; /**< passed to the functions below */
   /** Length, or dims: at most `room`, `*count` of them. Needed. */
   rr_status (*dims)(void* context, uint64_t* dims, size_t room, size_t* count);
@@ -252,7 +252,7 @@ RR_API rr_status rr_users_from_text(rr_str text, rr_users** out_users, rr_error*
 RR_API rr_status rr_users_from_file(rr_str path, rr_users** out_users, rr_error** error);
 /** A function that decides who may log in, instead of a list. */
 typedef struct rr_users_handler {
-  size_t size;   /**< sizeof(rr_users_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_users_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** The request belongs to the function: rr_request_answer_user, or rr_request_fail with
    * RR_AUTHENTICATION_ERROR. For several clients at once. */
@@ -270,22 +270,22 @@ RR_API rr_status rr_password_hash(rr_str password, rr_data** out_data, rr_error*
 
 /** A client of a service. */
 typedef struct rr_client_info {
-  size_t size;       /**< sizeof(rr_client_info), set by whoever fills it in */
+  size_t size;       /**< sizeof(rr_client_info), set by the caller */
   uint32_t client;   /**< its endpoint's number in this node */
   uint32_t reserved; /**< 0 */
   rr_node_id node;   /**< as it says of itself, or as its certificate proves */
   rr_str node_name;  /**< as it says; empty for none */
-  rr_str user;       /**< who is logged in; empty for nobody, and in on_client_... */
+  rr_str user;       /**< the user that is logged in; empty for none, and in on_client_... */
   uint64_t session;  /**< no other session of this process has had this number (minor version 2) */
 } rr_client_info;
 
 /** How a service is offered. All zero but the size: the defaults. */
 typedef struct rr_service_options {
-  size_t size;            /**< sizeof(rr_service_options), set by whoever fills it in */
+  size_t size;            /**< sizeof(rr_service_options), set by the caller */
   rr_elements attributes; /**< one element, a map of strings to varvalues; count 0 for none */
   rr_definition* const* extra_definitions; /**< whose types may be in varvalues and varobjects */
   size_t extra_definition_count;           /**< of `extra_definitions` */
-  const rr_users* users;                   /**< NULL: anybody, and no object can be locked */
+  const rr_users* users;                   /**< NULL: every client, and no object can be locked */
   uint32_t user_is_optional;               /**< with users: 1 lets clients connect without one */
   int32_t monitor_patience_ms;             /**< 0: 30 s */
   void* context;                           /**< passed to the functions below */
@@ -294,7 +294,7 @@ typedef struct rr_service_options {
   /** On a thread of the node, after the last request of the client. */
   void (*on_client_disconnected)(void* context, const rr_client_info* client);
   void (*drop)(void* context); /**< behind the end of the service */
-  /** Once, as soon as nobody waits for answers of a session any more: its client has left or is
+  /** Once, as soon as no client waits for answers of a session any more: its client has left or is
    * lost, or the service was closed. What it has asked for may still be handled, and is to be
    * broken off. On a thread of the node or that of rr_service_close or _disconnect, before
    * on_client_disconnected (minor version 2). */
@@ -340,7 +340,7 @@ RR_API void rr_service_disconnect(rr_service* service, uint32_t client);
 
 /** The client whose request this thread handles; 0 outside of that. */
 RR_API uint32_t rr_current_client(void);
-/** Who is logged in there, as text; NULL for nobody. */
+/** The user that is logged in there, as text; NULL for none. */
 RR_API rr_status rr_current_user(rr_data** out_name, rr_error** error);
 /** 1 when that user has a privilege. */
 RR_API int32_t rr_current_user_has(rr_str privilege);

@@ -12,13 +12,13 @@ extern "C" {
 #endif
 
 /** One end of a connected pipe. It stays connected until it is closed, its session ends or its
- * object is released, whether or not somebody holds a handle. Packets that have come can be
+ * object is released, whether or not a handle is held. Packets that have come can be
  * received from a closed end too. */
 typedef struct rr_pipe rr_pipe;
 
 /** How a pipe is connected. All zero but the size: the defaults. */
 typedef struct rr_pipe_options {
-  size_t size;       /**< sizeof(rr_pipe_options), set by whoever fills it in */
+  size_t size;       /**< sizeof(rr_pipe_options), set by the caller */
   uint32_t access;   /**< modifiers: RR_READONLY, RR_WRITEONLY and RR_UNRELIABLE count */
   int32_t index;     /**< wanted; the service decides. -1 leaves it to it, 0 asks for 0 */
   uint32_t reliable; /**< 1: although the pipe is declared unreliable */
@@ -89,7 +89,7 @@ RR_API size_t rr_pipe_unacknowledged(const rr_pipe* pipe);
 
 /** What is called for an endpoint of a pipe. Threads of the node. */
 typedef struct rr_pipe_handler {
-  size_t size;   /**< sizeof(rr_pipe_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_pipe_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** Packets that wait, and those that come, in order, one at a time, instead of being kept. NULL:
    * they are kept. `data` holds the packet, and may be retained. */
@@ -146,7 +146,7 @@ RR_API void rr_wire_set_lifespan(rr_wire* wire, int32_t lifespan_ms);
 
 /** What is called for an end of a wire. Threads of the node. */
 typedef struct rr_wire_handler {
-  size_t size;   /**< sizeof(rr_wire_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_wire_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** The value that is there, and those that come, in order, one at a time; a slow function misses
    * values, never the newest. `data` holds it, and may be retained. */

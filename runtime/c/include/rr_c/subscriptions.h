@@ -14,19 +14,19 @@ extern "C" {
 #endif
 
 /** Keeps a connection to each of some services, and connects again when one is lost. Lasts until it
- * is closed or its node is shut down, whether or not somebody holds a handle. */
+ * is closed or its node is shut down, whether or not a handle is held. */
 typedef struct rr_service_subscription rr_service_subscription;
 
 /** The client of a subscription that something comes from. */
 typedef struct rr_subscribed_client {
-  size_t size;     /**< sizeof(rr_subscribed_client), set by whoever fills it in */
+  size_t size;     /**< sizeof(rr_subscribed_client), set by the caller */
   rr_node_id node; /**< of the service */
   rr_str service;  /**< the service's name */
 } rr_subscribed_client;
 
 /** How a subscription connects, and what is called. All zero but the size: the defaults. */
 typedef struct rr_subscribe_options {
-  size_t size;                /**< sizeof(rr_subscribe_options), set by whoever fills it in */
+  size_t size;                /**< sizeof(rr_subscribe_options), set by the caller */
   rr_str username;            /**< these as in rr_connect_options */
   rr_str password;            /**< of `username` */
   rr_elements credentials;    /**< instead of the password, unless count is 0 */
@@ -44,8 +44,8 @@ typedef struct rr_subscribe_options {
   void (*on_failed)(void* context, const rr_error_info* why); /**< of an attempt */
   void (*drop)(void* context);     /**< behind the end of the subscription and of its handles */
   const rr_service_filter* filter; /**< minor version 3; may be NULL */
-  /** 1: logs in without TLS also at URLs that discovery has found, which anybody on the network can
-   * announce. URLs from elsewhere are not asked about. */
+  /** 1: logs in without TLS also at URLs that discovery has found, which any host on the network
+   * can announce. URLs from elsewhere are not asked about. */
   uint32_t allow_clear_credentials;
   uint32_t reserved; /**< 0 */
 } rr_subscribe_options;
@@ -96,7 +96,7 @@ RR_API rr_status rr_service_subscription_update_types(rr_service_subscription* s
 
 /** Functions that rr_service_subscription_watch adds. */
 typedef struct rr_service_subscription_handler {
-  size_t size;   /**< sizeof(rr_service_subscription_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_service_subscription_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** As in rr_subscribe_options; on_failed also says of which service. */
   void (*on_connected)(void* context, const rr_subscribed_client* client);
@@ -123,9 +123,9 @@ RR_API rr_status rr_service_subscription_client_root(rr_service_subscription* su
                                                      rr_object** out_object, rr_error** error);
 /** The state of one service. */
 typedef struct rr_subscribed_service {
-  size_t size;        /**< sizeof(rr_subscribed_service), set by whoever fills it in */
-  const rr_str* urls; /**< of the service, in the order in which they are tried */
-  size_t url_count;   /**< of `urls` */
+  size_t size;                        /**< sizeof(rr_subscribed_service), set by the caller */
+  const rr_str* urls;                 /**< of the service, in the order in which they are tried */
+  size_t url_count;                   /**< of `urls` */
   const rr_subscribed_client* client; /**< NULL unless it is connected */
   const rr_error_info* last_error; /**< why it is not, once an attempt has ended; otherwise NULL */
   uint64_t failures;               /**< of attempts since it was last connected */
@@ -187,7 +187,7 @@ RR_API rr_status rr_wire_subscription_set_lifespan(rr_wire_subscription* wire, i
                                                    rr_error** error);
 /** What is called for values of a wire. Threads of the node, one at a time. */
 typedef struct rr_wire_subscription_handler {
-  size_t size;   /**< sizeof(rr_wire_subscription_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_wire_subscription_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** needed: a value has come from this client */
   void (*on_value)(void* context, const rr_subscribed_client* client, const rr_elements* value,
@@ -245,7 +245,7 @@ RR_API rr_status rr_pipe_subscription_clients(const rr_pipe_subscription* pipe, 
 RR_API int32_t rr_pipe_subscription_wait(const rr_pipe_subscription* pipe, int32_t timeout_ms);
 /** What is called for packets of a pipe. Threads of the node, one at a time. */
 typedef struct rr_pipe_subscription_handler {
-  size_t size;   /**< sizeof(rr_pipe_subscription_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_pipe_subscription_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** Packets that wait, and those that come, in order, instead of being kept. */
   void (*on_packet)(void* context, const rr_subscribed_client* client, const rr_elements* packet,
@@ -263,7 +263,7 @@ RR_API rr_status rr_pipe_subscription_set_handler(rr_pipe_subscription* pipe,
 typedef struct rr_service_info_subscription rr_service_info_subscription;
 /** What is called for services that come and go. Threads of the node. */
 typedef struct rr_service_info_handler {
-  size_t size;   /**< sizeof(rr_service_info_handler), set by whoever fills it in */
+  size_t size;   /**< sizeof(rr_service_info_handler), set by the caller */
   void* context; /**< passed to the functions below */
   /** One at a time, in order. Services that are there already come first. */
   void (*on_detected)(void* context, const rr_found_service* service);

@@ -151,9 +151,9 @@ enum {
   RR_PERMISSION_DENIED = 152     /**< the user may not do this */
 };
 
-/** What an error says. To be sent or shown, by whoever has failed. */
+/** What an error says. To be sent or shown by the side that has failed. */
 typedef struct rr_error_info {
-  size_t size;       /**< sizeof(rr_error_info), set by whoever fills it in */
+  size_t size;       /**< sizeof(rr_error_info), set by the caller */
   rr_status code;    /**< to be sent: RR_REMOTE_ERROR for an exception of a definition */
   uint32_t reserved; /**< 0 */
   rr_str name; /**< `RobotRaconteur.OutOfRange`, `example.probe.ProbeFault`; may be left empty to be
@@ -201,7 +201,7 @@ enum { RR_NO_LIMIT = -1 }; /* as a time-out */
 
 /** How one call is made. NULL in its place: as the client or the node says. */
 typedef struct rr_call_options {
-  size_t size;                         /**< sizeof(rr_call_options), set by whoever fills it in */
+  size_t size;                         /**< sizeof(rr_call_options), set by the caller */
   int32_t timeout_ms;                  /**< 0: that of the client or node; RR_NO_LIMIT */
   uint32_t access;                     /**< modifiers of the member; RR_URGENT counts here */
   const rr_cancellation* cancellation; /**< may be NULL; may be released when the call has begun */
@@ -227,7 +227,7 @@ typedef struct rr_subscription rr_subscription;
 RR_API void rr_subscription_release(rr_subscription* subscription);
 
 /** Something that the program is asked for: by a client of its service, by a service whose client
- * it is, or by the runtime. Whoever gets one owns it, and answers or fails it exactly once, now or
+ * it is, or by the runtime. Its receiver owns it, and answers or fails it exactly once, now or
  * later, from any thread; then, or without that, it releases it. One that is released unanswered
  * fails with RR_OPERATION_ABORTED. What info tells stays valid until the release. Where it is said
  * that a request waits, the thread of the node that asks waits for the answer; it does not while a
@@ -255,7 +255,7 @@ enum {
 
 /** What an rr_request asks for, and who asks. */
 typedef struct rr_request_info {
-  size_t size;             /**< sizeof(rr_request_info), set by whoever fills it in */
+  size_t size;             /**< sizeof(rr_request_info), set by the caller */
   uint32_t kind;           /**< RR_REQUEST_... */
   uint32_t member;         /**< place in the table of the object's members */
   rr_elements arguments;   /**< as received */

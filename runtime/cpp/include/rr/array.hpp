@@ -45,7 +45,7 @@ class ArrayStorage {
     size_ = count;
     owner_ = std::move(owner);
   }
-  /// Room for items that the caller fills at once. Own memory that nobody shares is used again.
+  /// Room for items that the caller fills at once. Own memory that is not shared is used again.
   std::byte* make_room(std::size_t count, std::size_t item_size);
 
  protected:
@@ -92,7 +92,7 @@ class Array : private ArrayStorage {
   explicit Array(std::span<const T> items);
   /// Copies.
   Array(const std::vector<T>& items);  // NOLINT
-  /// Refers to items that somebody else owns; `owner` keeps them alive. Without an owner they must
+  /// Refers to items that another object owns; `owner` keeps them alive. Without an owner they must
   /// outlive every copy of the result: meant for sending, where nothing is copied then.
   static Array view(std::span<const T> items, MemoryRef owner = {});
 

@@ -41,7 +41,7 @@ struct AuditEvent {
   std::string path;                              ///< of the object; empty where there is none
   std::string member;                            ///< its name; empty where there is none
   std::string operation;  ///< `get`, `call`, `RequestObjectLock` ...; empty where the kind says all
-  std::string user;       ///< who is logged in, or wanted to be; empty for nobody
+  std::string user;       ///< the user that is logged in, or wanted to be; may be empty
   NodeId node;            ///< what the client says of itself
   std::string node_name;  ///< as it says; empty for none
   std::uint32_t client = 0;  ///< the number of the session's endpoint in this node
@@ -79,7 +79,7 @@ class AuditLog {
     unsigned kept_files = 5;
   };
 
-  /// Opens or makes the file, which nobody but its owner may read (0600). Throws rr::Error
+  /// Opens or makes the file, which only its owner may read (0600). Throws rr::Error
   /// (invalid_configuration) when that fails, and for what is no regular file, such as a link.
   explicit AuditLog(std::string path) : AuditLog(std::move(path), Options()) {}
   /// The same with limits of its own.

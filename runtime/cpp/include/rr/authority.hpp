@@ -31,7 +31,7 @@ struct IssuedCertificate {
 /// A certificate authority for nodes (04, section 6), kept in a folder of mode 0700:
 ///
 ///   ca.pem         its certificate, which nodes that trust it have as an authority file
-///   ca.key         its key, mode 0600, perhaps with a passphrase: whoever has it can be any node
+///   ca.key         its key, mode 0600, perhaps with a passphrase: its holder can be any node
 ///   revoked.pem    what it has revoked, for TlsOptions::revocation_files; runs out
 ///   index          what it has issued, a line each
 ///   nodes/ID.pem   a node's certificate and key, mode 0600, and the same as ID.p12

@@ -28,7 +28,7 @@ class Memory {
   [[nodiscard]] bool is_unique() const noexcept {
     return references_.load(std::memory_order_acquire) == 1;
   }
-  /// The bytes, if whoever holds the only reference may write over them; empty if not.
+  /// The bytes, if the holder of the only reference may write over them; empty if not.
   [[nodiscard]] virtual std::span<std::byte> storage() noexcept { return {}; }
 
  protected:

@@ -22,7 +22,7 @@ struct ChannelTraits {
   /// Bytes of the largest message that it carries; 0: as large as the nodes allow.
   std::uint32_t message_limit = 0;
   bool is_local = false;      ///< both ends are on one machine
-  bool is_encrypted = false;  ///< nobody between the ends can read or change what it carries
+  bool is_encrypted = false;  ///< nothing between the ends can read or change what it carries
   bool is_lossy = false;      ///< messages may get lost: their calls end with their time-outs
   /// A URL leads to one service only, and need not name it: MessageChannel::service_at().
   bool has_one_service = false;
@@ -64,7 +64,7 @@ class MessageLink {
   virtual void close() = 0;
 };
 
-/// Somebody who listens; ends with the object.
+/// A listener; ends with the object.
 class LinkListener {
  public:
   virtual ~LinkListener() = default;

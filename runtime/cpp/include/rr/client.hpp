@@ -31,7 +31,7 @@ struct ConnectOptions {
   std::string username{};
   /// What proves who the user is, as the service wants it: mostly `password`, a string.
   std::map<std::string, VarValue> credentials{};
-  /// Logs in without TLS even at a URL that this node's discovery has found, which anybody on the
+  /// Logs in without TLS even at a URL that this node's discovery has found, which any host on the
   /// network can announce. A URL from elsewhere is not asked about.
   bool allow_clear_credentials = false;
   /// Qualified name of the type that the root object must have or implement. Empty: that of the
@@ -39,7 +39,7 @@ struct ConnectOptions {
   std::string object_type{};
   /// For calls of this client's stubs; 0: the node's request timeout.
   std::chrono::milliseconds request_timeout{0};
-  /// Called once when the session has ended, whoever ended it, on a thread of the node: the reason.
+  /// Called once when either side has ended the session, on a thread of the node: the reason.
   /// operation_aborted means that this side closed it, connection_error a lost connection or a
   /// service that sends this client away, service_not_found that the service was closed,
   /// protocol_error that what came was no message or one over the limits.
@@ -69,7 +69,7 @@ class ClientBase {
   /// Calls that are open fail with connection_error. Nothing happens the second time.
   /// with_options() around it counts for nothing.
   void close();
-  /// False once the session has ended, whoever ended it.
+  /// False once either side has ended the session.
   [[nodiscard]] bool is_open() const;
   /// Ends all open calls of this session with operation_cancelled.
   void cancel_calls();

@@ -13,7 +13,7 @@
 namespace RR_VISIBLE rr {
 
 /// Remembers the first thing that went wrong while a message is read or written. The layers that
-/// touch bytes never throw; whoever started them looks here at the end.
+/// touch bytes never throw; the caller that started them looks here at the end.
 class Latch {
  public:
   /// Latches a failure unless there is one already: the protocol's code for it, what is wrong (a

@@ -36,7 +36,7 @@ struct SubscriptionClientId {
 };
 
 /// What the three kinds have in common. Copies are handles of the same subscription, which lasts
-/// until it is closed or the ServiceSubscription is, whether or not somebody holds a handle. Any
+/// until it is closed or the ServiceSubscription is, whether or not a handle is held. Any
 /// thread may use it; nothing blocks but the waiting forms.
 class MemberSubscription {
  public:
@@ -168,7 +168,7 @@ class PipeSubscriptionBase : public MemberSubscription {
   /// Packets that were lost because as many waited as may.
   [[nodiscard]] std::size_t lost_count() const;
   /// For send(): services with more unacknowledged packets are passed over. 0: packets are not
-  /// acknowledged and nobody is passed over (the default).
+  /// acknowledged and no endpoint is passed over (the default).
   void set_backlog_limit(std::size_t packets);
 
  protected:

@@ -115,7 +115,7 @@ void copy_into_memory(std::span<const std::uint64_t> dims, std::span<const std::
 template <class T>
 class StoredArrayMemory : public ArrayMemorySource<T> {
  public:
-  /// Keeps these items, shared with whoever else has them until one is written.
+  /// Keeps these items, shared with their other holders until one is written.
   explicit StoredArrayMemory(Array<T> items) : items_(std::move(items)) {}
   /// Keeps so many items, all zero at first.
   explicit StoredArrayMemory(std::size_t length = 0) : items_(length) {}

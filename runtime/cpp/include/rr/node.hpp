@@ -46,7 +46,7 @@ class ServiceInfoSubscription;
 /// A handler that takes long holds up its own client only: after a few milliseconds another thread
 /// waits for the network. NodeOptions::max_threads bounds how many there are,
 /// NodeOptions::session_threads how many of them one client may keep. A handler can answer later
-/// (Request::defer), and then holds up nobody.
+/// (Request::defer), and then holds up no other.
 ///
 /// A blocking call sends in the calling thread, which reads the connection itself until its answer
 /// is there, if no other thread does. It may be made anywhere, in handlers too.

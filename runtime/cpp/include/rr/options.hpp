@@ -51,7 +51,7 @@ struct TlsOptions {
   /// host's certificate, which then proves the node too.
   std::map<NodeId, std::string> pins{};
   /// Nothing but TLS, in both directions: clients that do not use it are refused, and this node
-  /// connects to nobody without it. Local and in-process channels are excepted.
+  /// connects to no peer without it. Local and in-process channels are excepted.
   bool is_required = false;
   /// Clients have to prove which node they are, when they use TLS.
   bool must_certify_clients = false;
@@ -79,8 +79,8 @@ struct WebSocketOptions {
   /// (docs/explanation/security.md).
   bool allow_local_pages = false;
   /// A file with the page of the inspector, which is served at `http://host:port/` and may then
-  /// connect: that page of this node, and no other of this machine. Everybody who reaches the port
-  /// gets it. Empty: nothing is served. Compressed by gzip it may have up to 1 MB.
+  /// connect: that page of this node, and no other of this machine. Every host that reaches the
+  /// port gets it. Empty: nothing is served. Compressed by gzip it may have up to 1 MB.
   std::string inspector_page{};
 };
 
@@ -203,7 +203,7 @@ struct NodeOptions {
   std::chrono::milliseconds keep_alive_period{60'000};
   /// A service drops clients that it has not heard for so long.
   std::chrono::milliseconds client_timeout{600'000};
-  /// A service drops generators that nobody has used for so long, and those that their client has
+  /// A service drops generators that were not used for so long, and those that their client has
   /// closed after this time or 30 s, whichever is less.
   std::chrono::milliseconds generator_timeout{600'000};
 
@@ -250,16 +250,17 @@ struct NodeOptions {
   MetricsOptions metrics{};
   /// Local sockets.
   LocalOptions local{};
-  /// How long whoever waits for a message keeps looking for it before it sleeps; with shared memory
-  /// only, and only while the other side runs on another processor. Answers come sooner by the time
-  /// that a wake-up takes, and the processor is busy meanwhile. 1 ms at most. 0: it sleeps at once.
+  /// How long a thread that waits for a message keeps looking for it before it sleeps; with shared
+  /// memory only, and only while the other side runs on another processor. Answers come sooner by
+  /// the time that a wake-up takes, and the processor is busy meanwhile. 1 ms at most. 0: it sleeps
+  /// at once.
   std::chrono::microseconds spin{0};
   /// Where nodes find each other by `rr+intra`; null: all of the process do.
   std::shared_ptr<IntraSpace> intra{};
   /// Channels of one's own by the schemes of their URLs, which must be other than ours.
   std::map<std::string, std::shared_ptr<MessageChannel>> channels{};
 
-  /// Notified of clients that connect, disconnect, log in and are refused (rr/audit.hpp); nobody by
+  /// Notified of clients that connect, disconnect, log in and are refused (rr/audit.hpp); none by
   /// default.
   AuditOptions audit{};
 

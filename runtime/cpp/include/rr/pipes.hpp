@@ -49,7 +49,7 @@ class PipeEnd {
   [[nodiscard]] bool is_unreliable() const;
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
   [[nodiscard]] std::uint32_t client() const;
-  /// Called once when the end is closed, whoever closed it, on a thread of the node, behind the
+  /// Called once when either side has closed the end, on a thread of the node, behind the
   /// packets that a function gets.
   void on_closed(Function<void()> function);
   /// Packets that wait to be received.
@@ -224,7 +224,7 @@ class PipeServerBase {
   [[nodiscard]] bool wait_sent(std::chrono::milliseconds limit,
                                std::size_t bytes = std::size_t{256} * 1024) const;
   /// For send_all: endpoints with more unacknowledged packets are passed over. 0: packets are not
-  /// acknowledged and nobody is passed over (the default); see PipeEnd for single endpoints.
+  /// acknowledged and no endpoint is passed over (the default); see PipeEnd for single endpoints.
   void set_backlog_limit(std::size_t packets) const;
 
  protected:

@@ -252,8 +252,8 @@ inline constexpr std::size_t smallest_message = 16;
 std::size_t message_size(std::span<const std::byte> bytes, const Limits& limits);
 
 /// Whether a message of `whole` bytes can start with `begun`: false as soon as its header or the
-/// sizes of its entries contradict that, so that nobody waits for bytes that will not come. True is
-/// no promise. Source: 01, section 9.
+/// sizes of its entries contradict that, so that no reader waits for bytes that will not come. True
+/// is no promise. Source: 01, section 9.
 bool can_be_message(std::span<const std::byte> begun, std::size_t whole);
 
 /// Reads and checks a whole message: every length, every nested element down to the limit of depth,

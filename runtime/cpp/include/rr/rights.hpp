@@ -58,7 +58,7 @@ std::string_view right_name(Right right);
 ///   deny  user:guest    path arm.tools[*] member speed,force access set
 ///   allow anyone        path arm member status access get
 ///
-/// Who: `anyone`, `user:*` (everybody who is logged in), `user:NAME`, or `role:NAME`, which is a
+/// Who: `anyone`, `user:*` (every user that is logged in), `user:NAME`, or `role:NAME`, which is a
 /// privilege of the user. `path`: objects as the protocol names them, beginning with the service;
 /// `*` is any step or any index, `**` at the end is the object and all below it. `member`: names,
 /// or

@@ -32,7 +32,7 @@ class GeneratorSource {
 
 /// A generator written by hand: R what each step gives, P what it takes; either may be void. It is
 /// let go when it has ended, when the client closes it or breaks off, when the client leaves, when
-/// its object is released, and when nobody has used it for NodeOptions::generator_timeout.
+/// its object is released, and when it was not used for NodeOptions::generator_timeout.
 template <class R, class P = void>
 class GeneratorOf : public GeneratorSource {
  public:

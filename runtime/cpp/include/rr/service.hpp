@@ -29,7 +29,7 @@ struct ServiceClient {
   std::uint32_t endpoint = 0;  ///< its number in this node
   NodeId node;                 ///< as it says, or as its certificate proves
   std::string node_name;       ///< as it says; empty for none
-  std::string user{};  ///< who is logged in, empty for nobody; in what clients() returns only
+  std::string user{};  ///< the user that is logged in, or empty; in what clients() returns only
   /// Number of the session, which no other session of this process has had.
   std::uint64_t session = 0;
 };
@@ -39,7 +39,7 @@ struct ServiceClient {
 struct ServiceLimits {
   /// Objects besides the root, those of clients' own included.
   std::size_t objects = 8'192;
-  /// While there are more than so many, those that nobody uses any more are released when a session
+  /// While there are more than so many, those that are not in use are released when a session
   /// ends.
   std::size_t unused_objects = 1'024;
   /// Of one session: generators that are open, or were closed less than 30 s ago.
@@ -61,10 +61,10 @@ struct ServiceOptions {
   /// Definitions, besides those that the root object's imports, whose types may be used in
   /// varvalues or varobjects.
   std::vector<const Definition*> extra_imports{};
-  /// Who may use the service; null: anybody, and no object can be locked.
+  /// The users of the service; null: every client may use it, and no object can be locked.
   std::shared_ptr<const Users> users{};
-  /// With users: whether everybody has to be one. Otherwise clients may connect without a user, and
-  /// log in later if they wish; in connecting they may not.
+  /// With users: whether every client has to be one. Otherwise clients may connect without a user,
+  /// and log in later if they wish; in connecting they may not.
   bool require_user = true;
   /// What each user may do; null: everything. See rr/rights.hpp.
   std::shared_ptr<const Rights> rights{};
@@ -85,8 +85,8 @@ struct ServiceOptions {
   /// Called on a thread of the node, after the last request of a client: when the connection has
   /// ended, which is up to 0.1 s after disconnect() or close().
   std::function<void(const ServiceClient&)> on_client_disconnected{};
-  /// Called once as soon as nobody waits for answers of a session any more: its client has left or
-  /// is lost, or the service was closed. Its handlers may still run. On a thread of the node or
+  /// Called once as soon as no client waits for answers of a session any more: its client has left
+  /// or is lost, or the service was closed. Its handlers may still run. On a thread of the node or
   /// that of close() or disconnect(), before on_client_disconnected.
   std::function<void(const ServiceClient&)> on_client_leaving{};
 };
@@ -110,15 +110,15 @@ class ServiceContext {
   /// known, invalid_operation for the root.
   virtual void release_path(const std::string& path) = 0;
   /// The same for one client and an object of its own (per_client()), or one below such an object:
-  /// nobody else is concerned. Throws rr::Error: service_error when this client has none there.
+  /// no other client is concerned. Throws rr::Error: service_error when this client has none there.
   virtual void release_path(const std::string& path, std::uint32_t client) = 0;
   /// Locks the object at a path, and all below it, as a client does (rr/locks.hpp), but until
   /// unlock(), whether or not the user has a session. Only that user may use it then; for an empty
-  /// name nobody may. Users who may release each other's locks may release this one, too, and so
+  /// name no user may. Users who may release each other's locks may release this one, too, and so
   /// may the user himself. Throws rr::Error: object_locked_error when the object, or one above or
   /// below, is locked, and what is thrown when no object can be found at the path.
   virtual void lock(const std::string& path, const std::string& user = {}) = 0;
-  /// Ends the lock at this very path, whoever has it. False when there is none.
+  /// Ends the lock at this very path, of any user. False when there is none.
   virtual bool unlock(const std::string& path) = 0;
   /// The node that offers the service; as long as the context lives.
   [[nodiscard]] virtual NodeContext& node() const = 0;
@@ -127,14 +127,15 @@ class ServiceContext {
   virtual void set_rights(std::shared_ptr<const Rights> rights) = 0;
   /// The clients that are connected now.
   [[nodiscard]] virtual std::vector<ServiceClient> clients() const = 0;
-  /// Ends the session of a client, if it has one.
+  /// Ends the session of a client, if it has one, and tells the client so. Returns before the
+  /// connection has ended.
   virtual void disconnect(std::uint32_t endpoint) = 0;
   /// Tells all clients that the service is closed, and ends their sessions. The name is free again.
   virtual void close() = 0;
 
   /// The client whose request this thread handles; 0 outside of handlers. For `perclient` members.
   static std::uint32_t current_client();
-  /// Who is logged in there; null for nobody, and outside of handlers.
+  /// The user that is logged in there; null for none, and outside of handlers.
   static std::shared_ptr<const User> current_user();
 };
 

@@ -96,7 +96,7 @@ struct SetupOptions {
   std::uint64_t log_file_size = 16 * 1024 * 1024;  ///< LogFile::Options::max_size
   std::uint64_t log_file_count = 5;                ///< LogFile::Options::kept_files
 
-  /// The defaults of a client: listens to discovery, and to nobody else.
+  /// The defaults of a client: listens to discovery, and to nothing else.
   static SetupOptions client();
   /// Those of a service: accepts connections by TCP from this machine, by local sockets and inside
   /// the process, and announces what others can reach. Its id is kept by its name, unless it has a

@@ -234,7 +234,7 @@ class Skeleton {
 ///
 /// The path is the same for all clients, and none of them can tell (an extension; 08, S76).
 /// Everything below the object is that client's own, too. Events go to the client alone; locks and
-/// monitors of the object concern nobody else. It is released when the client leaves, or by
+/// monitors of the object concern no other client. It is released when the client leaves, or by
 /// ServiceContext::release_path().
 template <class T>
 std::shared_ptr<T> per_client(std::shared_ptr<T> object) {

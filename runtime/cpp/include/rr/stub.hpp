@@ -102,7 +102,7 @@ class Event {
   /// Calls `function` for each event from now on, in order, on a thread of the node, never under a
   /// lock and never inside a call that the program makes. It may make calls itself. What it throws
   /// is given to the node's log. Connect before the events that matter: the service sends to
-  /// everybody and keeps nothing.
+  /// all clients and keeps nothing.
   template <class Function>
   Subscription connect(Function function);
 
@@ -138,7 +138,7 @@ class Stub {
   /// The object's type; the most derived one that this program knows.
   [[nodiscard]] virtual const ObjectType& rr_object_type() const = 0;
   /// For stubs of a class that is for objects of any type: called once by the session that has made
-  /// one, before anybody has it.
+  /// one, before the caller has it.
   virtual void rr_take_object_type(const ObjectType& /*type*/) {}
   /// `service.objref[index]...`
   [[nodiscard]] const std::string& rr_path() const { return rr_path_; }

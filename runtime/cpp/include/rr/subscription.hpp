@@ -76,7 +76,7 @@ struct SubscribedService {
 
 /// Keeps a connection to each of some services, and connects again when one is lost. Made by
 /// Node::subscribe. Copies are handles of the same subscription, which lasts until it is closed or
-/// its node is shut down, whether or not somebody holds a handle. Any thread may use it; nothing
+/// its node is shut down, whether or not a handle is held. Any thread may use it; nothing
 /// blocks but the waiting forms.
 ///
 ///   rr::ServiceSubscription camera = node.subscribe("rr+tcp://host:6257/?service=camera");
@@ -93,7 +93,7 @@ class ServiceSubscription {
   /// A handle of nothing.
   ServiceSubscription() = default;
 
-  /// Ends all clients that nobody has claimed, and what is being connected. Does not wait. Stubs
+  /// Ends all clients that are not claimed, and what is being connected. Does not wait. Stubs
   /// that were handed out stay, but their calls fail.
   void close();
   /// False once it is closed or its node is shut down.

@@ -92,9 +92,9 @@ struct RecorderOptions {
 };
 
 /// A tap that writes a recording. What it is told is copied into a buffer, which one thread of its
-/// own writes to the file, so that nobody waits for the disk unless the buffer is full. May serve
-/// several nodes at once. A program that is killed leaves a file that can be read up to what was
-/// written; what is in the buffer follows within the time of one write.
+/// own writes to the file, so that no request waits for the disk unless the buffer is full. May
+/// serve several nodes at once. A program that is killed leaves a file that can be read up to what
+/// was written; what is in the buffer follows within the time of one write.
 class Recorder final : public Tap {
  public:
   /// Makes the file, mode 0600, in place of a regular one of this user. Throws rr::Error (io_error)

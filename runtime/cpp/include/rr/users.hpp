@@ -39,11 +39,11 @@ class Users {
   /// it may take its time; several clients at once where there are several threads. The client's
   /// other requests wait until it returns. `credentials` are what the client gives, usually
   /// `password`; `node` is what it says of itself. Throws rr::Error (authentication_error) for
-  /// anybody who is not to be let in.
+  /// a user that is not to be let in.
   [[nodiscard]] virtual User authenticate(const std::string& name,
                                           const std::map<std::string, VarValue>& credentials,
                                           const NodeId& node) const = 0;
-  /// What whoever runs the service should know; goes to the log when it is registered.
+  /// Warnings for the operator of the service; they go to the log when it is registered.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
@@ -54,7 +54,7 @@ class Users {
 ///
 /// Name, hash, privileges (`_` for none), and, if the user may come from certain nodes only, their
 /// ids. Hashes are those of crypt(5), made by hash() or `mkpasswd -m yescrypt`. The hashes of
-/// existing files, 32 digits of an MD5 without salt, are taken with a warning: whoever reads the
+/// existing files, 32 digits of an MD5 without salt, are taken with a warning: a reader of the
 /// file finds out such passwords.
 class PasswordUsers final : public Users {
  public:

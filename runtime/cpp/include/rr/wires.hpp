@@ -23,7 +23,7 @@ class Skeleton;
 
 /// One end of a connected wire, whatever its values are. Copies are handles of the same end, which
 /// stays connected until it is closed, its session ends or its object is released, whether or not
-/// somebody holds a handle. Any thread may use it.
+/// a handle is held. Any thread may use it.
 class WireEnd {
  public:
   /// No end: not to be used.
@@ -33,7 +33,7 @@ class WireEnd {
   void close();
   /// False once it is closed, by either side, or lost.
   [[nodiscard]] bool is_open() const;
-  /// Called once when the end is closed, whoever closed it, on a thread of the node; at once when
+  /// Called once when either side has closed the end, on a thread of the node; at once when
   /// it is closed already.
   void on_closed(Function<void()> function);
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.

@@ -229,12 +229,19 @@ TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {
   for (int i = 0; i < 100; ++i) {
     platform::send_with_handle(sockets_.own(), bell, slots->handle());
   }
+  ASSERT_TRUE(platform::has_unreceived(sockets_.own()));
   const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req);
   const platform::Buffer piece{asked.data(), asked.size()};
-  client->send({&piece, 1});
-  EXPECT_TRUE(comes_true([&] { return receiver_->handled == 1; }));
-  EXPECT_EQ(open_descriptors(), before);
-  EXPECT_EQ(server_->take_slots(7), nullptr);
+  unsigned count = 0;
+  // One look at the socket takes one of them, or more.
+  while (count < 200 && platform::has_unreceived(sockets_.own())) {
+    ++count;
+    client->send({&piece, 1});
+    ASSERT_TRUE(comes_true([&] { return receiver_->handled == count; }));
+    EXPECT_EQ(open_descriptors(), before);
+  }
+  EXPECT_FALSE(platform::has_unreceived(sockets_.own())) << "the server leaves them in the socket";
+  EXPECT_FALSE(receiver_->is_closed);
 }
 
 TEST_F(SharingTest, NothingMayFollowTheRequest) {

@@ -36,7 +36,7 @@ class SteadyClock final : public Clock {
   void sleep_until(Nanoseconds time) override;
 };
 
-/// A clock that stands still until somebody moves it. Sleeping on it moves it too, so a single loop
+/// A clock that stands still until it is moved. Sleeping on it moves it too, so a single loop
 /// runs as fast as it can; several are kept in step by Lockstep. For one thread.
 class SimulatedClock final : public Clock {
  public:

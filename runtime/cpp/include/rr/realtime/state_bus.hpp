@@ -14,7 +14,7 @@
 #include "rr/realtime/signals.hpp"
 #include "rr/visibility.hpp"
 
-/// The signals of a loop by name, for everybody else.
+/// The signals of a loop by name, for other threads.
 namespace RR_VISIBLE rr {
 namespace realtime {
 

@@ -26,11 +26,11 @@ class UdpSocket {
 
   /// The port at which it listens.
   [[nodiscard]] std::uint16_t port() const;
-  /// From now on sends to this peer and hears nobody else. A name is looked up, which may take its
+  /// From now on sends to this peer and hears no other. A name is looked up, which may take its
   /// time. Throws rr::Error.
   void connect(const std::string& host, std::uint16_t port);
-  /// One call of the kernel. False when the packet was not taken: no room, no peer, nobody there.
-  /// It is not repeated; the next one says more.
+  /// One call of the kernel. False when the packet was not taken: no room, no peer, no socket
+  /// there. It is not repeated; the next one says more.
   bool send(std::span<const std::byte> bytes) const;
   /// One call of the kernel: the size of the packet that waits longest; nothing when none does.
   /// What does not fit into `bytes` gives a size larger than it.
