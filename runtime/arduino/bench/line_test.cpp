@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 #include <limits>
 #include <random>
 #include <tuple>
@@ -166,41 +167,53 @@ int calls() {
 
 class DamagedBytes : public ::testing::TestWithParam<unsigned> {};
 
+// But for what the CRC lets pass, which the line counts (docs/reference/serial-protocol.md).
 TEST_P(DamagedBytes, AreNeverTakenForAValue) {
   SimulatedLine line(elf_dir + "echo115200.elf", 115200, {.damage = 0.01}, GetParam());
   while (line.hello().kind != Outcome::Kind::reply) {
   }
   std::mt19937 random(GetParam());
   std::uint32_t done = 0;
-  int failed = 0;
+  unsigned failed = 0;
+  unsigned wrong = 0;
   for (int call = 0; call < calls(); ++call) {
     const double a = exact(static_cast<std::uint32_t>(random()));
     const double b = exact(static_cast<std::uint32_t>(random())) / 65536;
     const float sum = static_cast<float>(a) + static_cast<float>(b);
+    const unsigned forgeries = line.forgeries();
     const Outcome outcome = line.ask(Kind::Call, adding(a, b));
     if (outcome.kind == Outcome::Kind::reply) {
       ++done;
-      ASSERT_EQ(outcome.body.size(), 9U);
-      ASSERT_EQ(double_in(outcome.body, 1), static_cast<double>(sum)) << call;
+      const bool is_right =
+          outcome.body.size() == 9U && double_in(outcome.body, 1) == static_cast<double>(sum);
+      ASSERT_TRUE(is_right || line.forgeries() > forgeries) << call;
+      if (!is_right) ++wrong;
     } else {
+      ASSERT_GT(line.forgeries(), forgeries) << "the line is bad, but not so bad";
       ++failed;
       while (line.hello().kind != Outcome::Kind::reply) {
       }
     }
   }
-  EXPECT_EQ(failed, 0) << "the line is bad, but not so bad";
   EXPECT_GT(line.host.repeated(), static_cast<std::uint64_t>(calls()) / 4);
   line.end_noise();
-  EXPECT_EQ(count_of(line), done) << "each was done once";
+  const unsigned forgeries = line.forgeries();
+  EXPECT_LE(forgeries, static_cast<unsigned>(calls()) / 30'000) << "as many as a CRC lets pass";
+  RecordProperty("forgeries", static_cast<int>(forgeries));
+  if (forgeries != 0) std::cout << forgeries << " forged, " << wrong << " wrong\n";
+  const std::uint32_t count = count_of(line);
+  EXPECT_LE(count > done ? count - done : done - count, forgeries) << "each was done once";
   // Of the events some were refused, since the queue was full; none came twice.
   std::uint32_t last = 0;
+  unsigned odd = 0;
   for (const Unasked& event : line.unasked) {
     ASSERT_EQ(event.body.size(), 6U);
-    const auto count = static_cast<std::uint32_t>(event.body[2] | event.body[3] << 8 |
-                                                  event.body[4] << 16 | event.body[5] << 24);
-    EXPECT_GT(count, last);
-    last = count;
+    const auto number = static_cast<std::uint32_t>(event.body[2] | event.body[3] << 8 |
+                                                   event.body[4] << 16 | event.body[5] << 24);
+    if (number <= last) ++odd;
+    last = number;
   }
+  EXPECT_LE(odd, 2 * forgeries);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, DamagedBytes, ::testing::Values(1U, 2U, 3U));
 

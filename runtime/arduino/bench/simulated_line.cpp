@@ -10,6 +10,22 @@ namespace rr::serial::testing {
 
 using namespace std::chrono_literals;
 
+namespace {
+constexpr std::size_t frames_remembered = 64;
+}
+
+// All that a frame has become is there at the same time as the frame, and both finders go on.
+void ForgeryWatch::take(const std::vector<std::uint8_t>& sent,
+                        const std::vector<std::uint8_t>& received) {
+  sent_finder_.take(sent, [&](const Frame& frame) {
+    sent_.push_back(frame);
+    if (sent_.size() > frames_remembered) sent_.pop_front();
+  });
+  received_finder_.take(received, [&](const Frame& frame) {
+    if (std::ranges::find(sent_, frame) == sent_.end()) ++count_;
+  });
+}
+
 SimulatedLine::SimulatedLine(const std::string& elf, std::uint32_t baud,
                              const BadLine::Rates& rates, unsigned seed)
     : board(elf, baud), host(baud), there_(rates, seed), back_(rates, seed + 1000) {
@@ -20,13 +36,17 @@ void SimulatedLine::step(Time until) {
   const std::vector<std::uint8_t> out = host.take_output();
   if (!out.empty()) {
     bytes += out.size();
-    board.send(there_.pass(out));
+    const std::vector<std::uint8_t> received = there_.pass(out);
+    there_watch_.take(out, received);
+    board.send(received);
   }
   board.run_until(std::min(until, board.now() + 500us));
   const std::vector<std::uint8_t> in = board.receive();
   if (!in.empty()) {
     bytes += in.size();
-    host.receive(back_.pass(in), board.now());
+    const std::vector<std::uint8_t> received = back_.pass(in);
+    back_watch_.take(in, received);
+    host.receive(received, board.now());
   }
   host.tick(board.now());
   for (Unasked& one : host.take_unasked()) unasked.push_back(std::move(one));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,11 +10,26 @@
 
 #include "runtime/arduino/bench/bad_line.hpp"
 #include "runtime/arduino/bench/simulated_board.hpp"
+#include "runtime/cpp/src/serial/frames.hpp"
 #include "runtime/cpp/src/serial/host_link.hpp"
 
 /// For tests: a host and a simulated board on one line, in the board's time: repeatable to the
 /// cycle.
 namespace rr::serial::testing {
+
+/// Finds the frames that a line has damaged and whose CRC is right nevertheless: one of 65,536 of
+/// those that only the CRC can find, which no end of the line can know of.
+class ForgeryWatch {
+ public:
+  void take(const std::vector<std::uint8_t>& sent, const std::vector<std::uint8_t>& received);
+  [[nodiscard]] unsigned count() const { return count_; }
+
+ private:
+  FrameFinder sent_finder_;
+  FrameFinder received_finder_;
+  std::deque<Frame> sent_;  // lately
+  unsigned count_ = 0;
+};
 
 class SimulatedLine {
  public:
@@ -31,6 +47,8 @@ class SimulatedLine {
   std::string text(std::uint8_t number);
 
   void end_noise();
+  /// Damaged frames with a right CRC, both ways.
+  [[nodiscard]] unsigned forgeries() const { return there_watch_.count() + back_watch_.count(); }
   /// Called after each step of time; for what happens meanwhile.
   std::function<void()> meanwhile{};
 
@@ -45,6 +63,8 @@ class SimulatedLine {
 
   BadLine there_;
   BadLine back_;
+  ForgeryWatch there_watch_;
+  ForgeryWatch back_watch_;
   std::uint16_t session_ = 0;
 };
 
