@@ -63,6 +63,7 @@ run_again() {
     part "asan: build" true
     part "good" echo "good runs"
     part "bad" false
+    (part "tsan: build" false && part "behind it" echo "behind it runs") || true
     part "changing" eval 'echo "changing runs"; echo more >>"$top/other"'
     print_parts
   )
@@ -78,6 +79,7 @@ if git --version >/dev/null 2>&1; then
   rm "$work/tree/other"
   said=$(run_again)
   ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again: $said"
+  grep -q '^behind it runs$' <<<"$said" || complain "what has passed behind a build that failed does not run again: $said"
   for line in '^good +[0-9]+ s  ok at [0-9]+-[0-9-]+ [0-9:]+$' '^asan: build +[0-9]+ s  ok$' '^bad +[0-9]+ s  FAILED$'; do
     grep -qE "$line" <<<"$said" || complain "a run that goes on: no $line in: $said"
   done

@@ -166,6 +166,7 @@ part() {
   fi
   failed_parts=$((failed_parts + 1))
   [ "$parts_go_on" ] || exit $status
+  [[ ! $name =~ (configure|build)$ ]] || has_failed_build=1
 }
 end_parts() { [ $failed_parts = 0 ] || exit 1; }
 
@@ -188,10 +189,12 @@ note_parts() {
   parts_tree=$(tree_now)
   [ "$parts_tree" ] || fail "--go-on needs the tree in git, which tells whether it is the same still"
 }
-# Of a tree that has changed while the part ran, nothing is known. Rows of other trees go.
+# Of a tree that has changed while the part ran, nothing is known, nor behind a build that has failed: programs may be older.
+# Rows of other trees go.
+has_failed_build=
 note_passed() {
   local file=$top/$noted_parts
-  [ "$parts_tree" ] && [ "$(tree_now)" = "$parts_tree" ] || return 0
+  [ "$parts_tree" ] && [ ! "$has_failed_build" ] && [ "$(tree_now)" = "$parts_tree" ] || return 0
   mkdir -p "$top/build/log" "${file%/*}"
   (
     flock 9

@@ -174,7 +174,6 @@ TEST_P(DamagedBytes, AreNeverTakenForAValue) {
   }
   std::mt19937 random(GetParam());
   std::uint32_t done = 0;
-  unsigned failed = 0;
   unsigned wrong = 0;
   for (int call = 0; call < calls(); ++call) {
     const double a = exact(static_cast<std::uint32_t>(random()));
@@ -190,7 +189,6 @@ TEST_P(DamagedBytes, AreNeverTakenForAValue) {
       if (!is_right) ++wrong;
     } else {
       ASSERT_GT(line.forgeries(), forgeries) << "the line is bad, but not so bad";
-      ++failed;
       while (line.hello().kind != Outcome::Kind::reply) {
       }
     }
