@@ -8,10 +8,12 @@
 #include <chrono>
 #include <future>
 #include <semaphore>
+#include <string_view>
 #include <thread>
 
 #include "rr/call.hpp"
 #include "rr/lock_keeper.hpp"
+#include "rr/tap.hpp"
 #include "rr/users.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -52,8 +54,9 @@ constexpr const char* accounts =
 struct Secured : Pair {
   explicit Secured(std::chrono::milliseconds patience = 30s)
       : Secured(std::make_shared<Monitored>(), patience) {}
-  Secured(std::shared_ptr<Monitored> offered, std::chrono::milliseconds patience)
-      : Pair({}, {}, offered,
+  Secured(std::shared_ptr<Monitored> offered, std::chrono::milliseconds patience,
+          std::shared_ptr<Tap> client_tap = nullptr)
+      : Pair({}, {.tap = std::move(client_tap)}, offered,
              {.users = std::make_shared<PasswordUsers>(accounts), .monitor_patience = patience}),
         counter(std::move(offered)) {}
   Client<CounterStub> connect_as(const std::string& user) {
@@ -362,8 +365,33 @@ TEST(Monitors, NeedAnObjectThatHasOne) {
   EXPECT_EQ(client->get_value(), 0);
 }
 
+// Counts the requests for monitors that a client has given to its connections.
+class EnterTap final : public Tap {
+ public:
+  std::uint32_t opened(const ConnectionOpened& /*connection*/) override { return 1; }
+  void agreed(std::uint32_t /*connection*/, const ConnectionAgreed& /*agreement*/) override {}
+  std::uint64_t message(std::uint32_t /*connection*/, Direction direction,
+                        std::span<const Piece> message) override {
+    std::string bytes;
+    for (const Piece& piece : message) {
+      bytes.append(reinterpret_cast<const char*>(piece.data), piece.size);
+    }
+    if (direction == Direction::to_service && bytes.find("MonitorEnter") != std::string::npos) {
+      ++count;
+    }
+    return 0;
+  }
+  void replaced(std::uint32_t /*connection*/, std::uint64_t /*message*/) override {}
+  void closed(std::uint32_t /*connection*/, ErrorCode /*code*/,
+              std::string_view /*reason*/) override {}
+  void definition(std::string_view /*text*/) override {}
+
+  std::atomic<int> count{0};
+};
+
 TEST(Monitors, AreEnteredInTheOrderOfAsking) {
-  Secured pair;
+  const auto tap = std::make_shared<EnterTap>();
+  Secured pair(std::make_shared<Monitored>(), 30s, tap);
   auto first = pair.connect_as("alice");
   enter_monitor(*first);
   std::vector<Client<CounterStub>> clients;
@@ -378,7 +406,9 @@ TEST(Monitors, AreEnteredInTheOrderOfAsking) {
       const std::lock_guard lock(mutex);
       order.push_back(i);
     }));
-    std::this_thread::sleep_for(30ms);
+    // The service has it once it answers what this session sends behind it.
+    ASSERT_TRUE(eventually([&] { return tap->count == i + 2; }));
+    EXPECT_EQ(code_of([&] { clients.back()->get_value(); }), ErrorCode::invalid_operation);
   }
   EXPECT_EQ(first->get_value(), 0);
   exit_monitor(*first);
