@@ -197,9 +197,11 @@ TEST_P(DamagedBytes, AreNeverTakenForAValue) {
   line.end_noise();
   const unsigned forgeries = line.forgeries();
   EXPECT_LE(forgeries, static_cast<unsigned>(calls()) / 30'000) << "as many as a CRC lets pass";
-  RecordProperty("forgeries", static_cast<int>(forgeries));
-  if (forgeries != 0) std::cout << forgeries << " forged, " << wrong << " wrong\n";
   const std::uint32_t count = count_of(line);
+  if (forgeries != 0) {
+    std::cout << forgeries << " forged, " << wrong << " wrong, " << count << " carried out of "
+              << done << '\n';
+  }
   EXPECT_LE(count > done ? count - done : done - count, forgeries) << "each was done once";
   // Of the events some were refused, since the queue was full; none came twice.
   std::uint32_t last = 0;

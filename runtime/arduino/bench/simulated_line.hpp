@@ -21,6 +21,7 @@ namespace rr::serial::testing {
 /// those that only the CRC can find, which no end of the line can know of.
 class ForgeryWatch {
  public:
+  /// What one end has sent, and what the other one receives of it.
   void take(const std::vector<std::uint8_t>& sent, const std::vector<std::uint8_t>& received);
   [[nodiscard]] unsigned count() const { return count_; }
 

@@ -14,23 +14,10 @@
 #include "runtime/cpp/src/channel/operations.hpp"
 #include "runtime/cpp/src/channel/own_requests.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
+#include "runtime/cpp/src/channel/testing/quiet_tap.hpp"
 
 namespace rr::channel {
 namespace {
-
-class NoTap final : public Tap {
- public:
-  std::uint32_t opened(const ConnectionOpened& /*connection*/) override { return 0; }
-  void agreed(std::uint32_t /*connection*/, const ConnectionAgreed& /*agreement*/) override {}
-  std::uint64_t message(std::uint32_t /*connection*/, Direction /*direction*/,
-                        std::span<const Piece> /*message*/) override {
-    return 0;
-  }
-  void replaced(std::uint32_t /*connection*/, std::uint64_t /*message*/) override {}
-  void closed(std::uint32_t /*connection*/, ErrorCode /*code*/,
-              std::string_view /*reason*/) override {}
-  void definition(std::string_view /*text*/) override {}
-};
 
 // A service's side of a connection that nobody has said anything on.
 class OwnRequestsTest : public ::testing::Test {
@@ -134,7 +121,7 @@ TEST_F(OwnRequestsTest, WiresHaveSlotsWhereBothSidesWantThem) {
   EXPECT_FALSE(ask(slots_level + 1).has_slots);
   EXPECT_FALSE(has_slots());
   EXPECT_TRUE(wants_slots(options_));
-  options_.tap = std::make_shared<NoTap>();
+  options_.tap = std::make_shared<rr::testing::QuietTap>();
   EXPECT_FALSE(wants_slots(options_));
   EXPECT_FALSE(ask(slots_level).has_slots) << "a recording has to have the values";
   EXPECT_FALSE(has_slots());

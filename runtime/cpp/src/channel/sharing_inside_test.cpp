@@ -229,7 +229,6 @@ TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {
   for (int i = 0; i < 100; ++i) {
     platform::send_with_handle(sockets_.own(), bell, slots->handle());
   }
-  ASSERT_TRUE(platform::has_unreceived(sockets_.own()));
   const std::vector<std::byte> asked = rr::testing::message_of(EntryType::property_get_req);
   const platform::Buffer piece{asked.data(), asked.size()};
   unsigned count = 0;

@@ -15,6 +15,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 #include "runtime/cpp/src/channel/testing/accepting.hpp"
+#include "runtime/cpp/src/channel/testing/quiet_tap.hpp"
 #include "runtime/cpp/src/channel/testing/socket_pair.hpp"
 
 namespace rr::channel {
@@ -339,19 +340,14 @@ TEST_F(StreamConnectionTest, AConnectionMayBeWithoutAddressCertificateAndStrand)
   EXPECT_TRUE(comes_true([&] { return at_client_->answer == 3U; }));
 }
 
-class CountingTap final : public Tap {
+class CountingTap final : public rr::testing::QuietTap {
  public:
-  std::uint32_t opened(const ConnectionOpened& /*connection*/) override { return 1; }
-  void agreed(std::uint32_t /*number*/, const ConnectionAgreed& /*agreement*/) override {}
   std::uint64_t message(std::uint32_t /*number*/, Direction direction,
                         std::span<const Piece> message) override {
     ++(direction == Direction::to_service ? to_service : to_client);
     bytes += message.front().size;
     return 1;
   }
-  void replaced(std::uint32_t /*number*/, std::uint64_t /*message*/) override {}
-  void closed(std::uint32_t /*number*/, ErrorCode /*code*/, std::string_view /*why*/) override {}
-  void definition(std::string_view /*text*/) override {}
   int to_service = 0;
   int to_client = 0;
   std::size_t bytes = 0;

@@ -8,13 +8,14 @@
 #include <chrono>
 #include <future>
 #include <semaphore>
-#include <string_view>
+#include <span>
+#include <string>
 #include <thread>
 
 #include "rr/call.hpp"
 #include "rr/lock_keeper.hpp"
-#include "rr/tap.hpp"
 #include "rr/users.hpp"
+#include "runtime/cpp/src/channel/testing/quiet_tap.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::testing {
@@ -366,10 +367,8 @@ TEST(Monitors, NeedAnObjectThatHasOne) {
 }
 
 // Counts the requests for monitors that a client has given to its connections.
-class EnterTap final : public Tap {
+class EnterTap final : public QuietTap {
  public:
-  std::uint32_t opened(const ConnectionOpened& /*connection*/) override { return 1; }
-  void agreed(std::uint32_t /*connection*/, const ConnectionAgreed& /*agreement*/) override {}
   std::uint64_t message(std::uint32_t /*connection*/, Direction direction,
                         std::span<const Piece> message) override {
     std::string bytes;
@@ -381,10 +380,6 @@ class EnterTap final : public Tap {
     }
     return 0;
   }
-  void replaced(std::uint32_t /*connection*/, std::uint64_t /*message*/) override {}
-  void closed(std::uint32_t /*connection*/, ErrorCode /*code*/,
-              std::string_view /*reason*/) override {}
-  void definition(std::string_view /*text*/) override {}
 
   std::atomic<int> count{0};
 };
