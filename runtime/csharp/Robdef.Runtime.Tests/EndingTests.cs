@@ -147,10 +147,7 @@ public sealed class EndingTests
         }
     }
 
-    /// <summary>
-    /// In a session of its own: a generator whose opening was cancelled stays in the service until that ends, or nobody has
-    /// used it for the time that services wait.
-    /// </summary>
+    /// <summary>In a session of its own: until that ends, a service knows the last generators that were closed.</summary>
     private static async Task<int> CancelInASession(Node node, string url, int times)
     {
         using Client<ArmStub> client = node.Connect<ArmStub>(url);

@@ -85,6 +85,35 @@ test("a monitor is waited for longer than for an answer", async () => {
   }
 });
 
+test("generators that are closed do not count, and the last of them are known", async () => {
+  const { node, port } = await served({ limits: { generators: 2 } });
+  const own = new RRNode();
+  try {
+    const client = await own.connect(`rr+tcp://127.0.0.1:${port}/?service=bench`);
+    const { root } = client;
+    const open = await root.generate("count", [2]);
+    assert.deepEqual(await open.next(undefined), { done: false, value: 0 });
+    const closed = [];
+    for (let i = 0; i < 300; ++i) {
+      const one = await root.generate("count", [10]);
+      assert.deepEqual(await one.next(undefined), { done: false, value: 0 });
+      await (i % 2 === 0 ? one.close() : one.abort());
+      closed.push(one);
+    }
+    const last = await root.generate("count", [10]);
+    await assert.rejects(root.generate("count", [10]), raises(ErrorCode.OutOfSystemResource));
+    await last.close();
+    assert.deepEqual(await last.next(undefined), { done: true, value: undefined });
+    await assert.rejects(closed[299]!.next(undefined), raises(ErrorCode.OperationAborted));
+    await assert.rejects(closed[0]!.next(undefined), raises(ErrorCode.InvalidOperation));
+    assert.deepEqual(await open.next(undefined), { done: false, value: 1 });
+    await client.close();
+  } finally {
+    await own.close();
+    await node.close();
+  }
+});
+
 for (const scheme of ["rr+tcp", "rr+ws"]) {
   test(`all members work over ${scheme}`, async () => {
     const { node, bench, port } = await served();

@@ -42,7 +42,7 @@ struct ServiceLimits {
   /// While there are more than so many, those that are not in use are released when a session
   /// ends.
   std::size_t unused_objects = 1'024;
-  /// Of one session: generators that are open, or were closed less than 30 s ago.
+  /// Of one session: generators that are open.
   std::size_t generators = 1'024;
   /// Of one session: requests whose answers the service has put off.
   std::size_t late_answers = 4'096;

@@ -226,6 +226,39 @@ TEST(ServiceLimits, TheGeneratorsOfASessionAreCounted) {
   EXPECT_NO_THROW(first->count_to(1));  // what has ended does not count
 }
 
+// For a while a service knows the last of them.
+TEST(ServiceLimits, GeneratorsThatAreClosedDoNotCount) {
+  Node server;
+  Node client;
+  ServiceOptions options;
+  options.limits.generators = 2;
+  server.register_service("board", std::make_shared<Board>(), options);
+  auto board = client.connect<BoardStub>(
+      "rr+tcp://127.0.0.1:" + std::to_string(server.listen_tcp(0, "127.0.0.1")) +
+      "/?service=board");
+  auto open = board->count_to(2);
+  EXPECT_EQ(open.next(), 1);
+  for (int i = 0; i < 1000; ++i) {
+    auto counter = board->count_to(10);
+    EXPECT_EQ(counter.next(), 1);
+    if (i % 2 == 0) {
+      counter.close();
+      EXPECT_EQ(counter.next(), std::nullopt);
+    } else {
+      counter.abort();
+      EXPECT_EQ(code_of([&] { counter.next(); }), ErrorCode::operation_aborted);
+    }
+  }
+  std::vector<Generator<std::int32_t>> closed;
+  for (int i = 0; i < 1000; ++i) {
+    closed.push_back(board->count_to(1));
+    closed.back().close();
+  }
+  EXPECT_EQ(code_of([&] { closed.front().next(); }), ErrorCode::invalid_operation);
+  EXPECT_EQ(closed.back().next(), std::nullopt);
+  EXPECT_EQ(open.next(), 2);
+}
+
 TEST(ServiceLimits, TheAnswersThatAServiceOwesASessionAreCounted) {
   auto counter = std::make_shared<LateCounter>();
   ServiceOptions options;

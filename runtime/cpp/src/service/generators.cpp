@@ -22,8 +22,18 @@ namespace {
 
 // How long the number of a closed generator is known (07, section 8).
 constexpr channel::Milliseconds closed_time{30'000};
+// So many of them in one session: a client may open and close faster than that time passes.
+constexpr std::size_t most_closed = 128;
 // What a generator takes, about; a coroutine is not asked for its size.
 constexpr std::size_t generator_cost = 1024;
+
+// They are destroyed when the deferred calls are made.
+void leave(std::vector<std::shared_ptr<ClientGenerator>> removed,
+           channel::DeferredCallbacks& deferred) {
+  if (removed.empty()) return;
+  deferred.emplace_back(
+      [kept = std::make_shared<decltype(removed)>(std::move(removed))] { kept->clear(); });
+}
 
 Error invalid_generator() { return {ErrorCode::invalid_operation, "Invalid generator"}; }
 
@@ -39,7 +49,7 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
   generator->last_used = channel::coarse_now();
   const MutexLock lock(mutex_);
   if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
-  if (generators_.size() >= limit) {
+  if (generators_.size() - closed_.size() >= limit) {
     throw Error(ErrorCode::out_of_system_resource,
                 "more than " + std::to_string(limit) + " generators of one session");
   }
@@ -53,10 +63,26 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
 void Generators::remove(std::int32_t index) {
   std::shared_ptr<ClientGenerator> removed;
   const MutexLock lock(mutex_);
-  const auto found = generators_.find(index);
-  if (found == generators_.end()) return;
-  removed = std::move(found->second);
-  generators_.erase(found);
+  removed = forget(index);
+}
+
+std::shared_ptr<ClientGenerator> Generators::forget(std::int32_t index) {
+  std::erase(closed_, index);
+  const auto node = generators_.extract(index);
+  return node ? std::move(node.mapped()) : nullptr;
+}
+
+std::vector<std::shared_ptr<ClientGenerator>> Generators::forget_if(
+    const std::function<bool(const ClientGenerator&)>& is_over) {
+  std::vector<std::shared_ptr<ClientGenerator>> removed;
+  std::erase_if(generators_, [&](auto& item) {
+    if (!is_over(*item.second)) return false;
+    std::erase(closed_, item.first);
+    item.second->state = ClientGenerator::State::ended;
+    removed.push_back(std::move(item.second));
+    return true;
+  });
+  return removed;
 }
 
 // A step that waits for a callback lets the next request in. When that is for the same generator it
@@ -99,24 +125,29 @@ ClientGenerator::State Generators::Use::state() const {
   return generator_->state;
 }
 
-void Generators::Use::set_state(ClientGenerator::State state) {
+void Generators::Use::close(ClientGenerator::State state) {
+  std::shared_ptr<ClientGenerator> oldest;
   const MutexLock lock(generators_.mutex_);
+  if (generator_->state != ClientGenerator::State::open) return;
   generator_->state = state;
+  generators_.closed_.push_back(index_);
+  if (generators_.closed_.size() > most_closed) {
+    oldest = generators_.forget(generators_.closed_.front());
+  }
 }
 
 void Generators::Use::end() {
-  set_state(ClientGenerator::State::ended);
-  generators_.remove(index_);
+  std::shared_ptr<ClientGenerator> removed;
+  const MutexLock lock(generators_.mutex_);
+  generator_->state = ClientGenerator::State::ended;
+  removed = generators_.forget(index_);
 }
 
 std::size_t Generators::end_if(const Choice& is_over) {
   std::vector<std::shared_ptr<ClientGenerator>> removed;
   const MutexLock lock(mutex_);
-  std::erase_if(generators_, [&](auto& item) {
-    if (!is_over(item.second->object->path, item.second->member->name)) return false;
-    item.second->state = ClientGenerator::State::ended;
-    removed.push_back(std::move(item.second));
-    return true;
+  removed = forget_if([&](const ClientGenerator& generator) {
+    return is_over(generator.object->path, generator.member->name);
   });
   return removed.size();
 }
@@ -128,32 +159,20 @@ void Generators::release_path(std::string_view path) {
 }
 
 void Generators::end(channel::DeferredCallbacks& deferred) {
-  auto removed = std::make_shared<decltype(generators_)>();
-  {
-    const MutexLock lock(mutex_);
-    has_ended_ = true;
-    for (const auto& [index, generator] : generators_) {
-      generator->state = ClientGenerator::State::ended;
-    }
-    removed->swap(generators_);
-  }
-  if (!removed->empty()) deferred.emplace_back([removed] { removed->clear(); });
+  const MutexLock lock(mutex_);
+  has_ended_ = true;
+  leave(forget_if([](const ClientGenerator&) { return true; }), deferred);
 }
 
 void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
                              channel::DeferredCallbacks& deferred) {
   const MutexLock lock(mutex_);
-  std::erase_if(generators_, [&](auto& item) {
-    const ClientGenerator& generator = *item.second;
-    const bool is_open = generator.state == ClientGenerator::State::open;
-    const channel::Milliseconds limit = is_open ? timeout : std::min(timeout, closed_time);
-    if (generator.next_step != generator.current_step || now - generator.last_used <= limit) {
-      return false;
-    }
-    deferred.emplace_back([removed = std::make_shared<std::shared_ptr<ClientGenerator>>(
-                               std::move(item.second))] { removed->reset(); });
-    return true;
-  });
+  leave(forget_if([&](const ClientGenerator& generator) {
+          const bool is_open = generator.state == ClientGenerator::State::open;
+          const channel::Milliseconds limit = is_open ? timeout : std::min(timeout, closed_time);
+          return generator.next_step == generator.current_step && now - generator.last_used > limit;
+        }),
+        deferred);
 }
 
 // In a request an error is a wish (07, section 8); any answer with an error is the last.
@@ -212,7 +231,7 @@ void ServerEndpoint::step_generator(const Question& question, Decoder& decoder,
 void ServerEndpoint::end_generator(ErrorCode wish, Generators::Use& generator) {
   if (generator.state() != ClientGenerator::State::open) return;
   const bool is_close = wish == ErrorCode::stop_iteration;
-  generator.set_state(is_close ? ClientGenerator::State::closed : ClientGenerator::State::aborted);
+  generator.close(is_close ? ClientGenerator::State::closed : ClientGenerator::State::aborted);
   const std::shared_ptr<GeneratorSource> source = std::move(generator->source);
   if (is_close) {
     source->rr_close();

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "rr/definition.hpp"
 #include "rr/holding.hpp"
@@ -41,8 +43,8 @@ struct ClientGenerator {
 class Generators {
  public:
   /// Returns its number. Throws rr::Error: connection_error when the client has gone,
-  /// out_of_system_resource when it has `limit` of them or holds too much, and what `check` throws,
-  /// which is asked when end_if() would find it.
+  /// out_of_system_resource when `limit` of them are open or it holds too much, and what `check`
+  /// throws, which is asked when end_if() would find it.
   std::int32_t add(const std::shared_ptr<ClientGenerator>& generator, std::size_t limit,
                    const std::function<void()>& check);
   void remove(std::int32_t index);
@@ -60,7 +62,8 @@ class Generators {
     ClientGenerator& operator*() const { return *generator_; }
     ClientGenerator* operator->() const { return generator_.get(); }
     [[nodiscard]] ClientGenerator::State state() const;
-    void set_state(ClientGenerator::State state);
+    /// As the client wishes: `closed` or `aborted`. The number stays known for a while.
+    void close(ClientGenerator::State state);
     /// Forgets the generator, which goes away with this.
     void end();
 
@@ -82,11 +85,19 @@ class Generators {
                    channel::DeferredCallbacks& deferred);
 
  private:
+  using Numbered = std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>>;
+
+  /// What was forgotten, which is to be destroyed without the lock; null for an unknown number.
+  [[nodiscard]] std::shared_ptr<ClientGenerator> forget(std::int32_t index) RR_REQUIRES(mutex_);
+  /// The same with all for which `is_over` holds.
+  [[nodiscard]] std::vector<std::shared_ptr<ClientGenerator>> forget_if(
+      const std::function<bool(const ClientGenerator&)>& is_over) RR_REQUIRES(mutex_);
+
   Mutex mutex_;
   Condition stepped_;
   bool has_ended_ RR_GUARDED_BY(mutex_) = false;
-  std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>> generators_
-      RR_GUARDED_BY(mutex_);
+  Numbered generators_ RR_GUARDED_BY(mutex_);
+  std::deque<std::int32_t> closed_ RR_GUARDED_BY(mutex_);  // of these, oldest first
 };
 
 }  // namespace rr::service

@@ -10,6 +10,8 @@ import { findElement } from "../value/shapes.js";
 import type { GeneratorSource, ServedObject } from "./served_object.js";
 
 const keptAfterClose = 30_000;
+/** So many that are closed are known: a client may open and close faster than that time passes. */
+const mostClosed = 128;
 
 interface Held {
   object: ServedObject;
@@ -22,6 +24,8 @@ interface Held {
 
 export class Generators {
   private readonly held = new Map<number, Held>();
+  /** Of these, oldest first. */
+  private readonly closed = new Set<number>();
 
   constructor(
     private readonly limit: number,
@@ -30,7 +34,7 @@ export class Generators {
 
   /** Keeps what a function has given; the elements of its answer. */
   add(object: ServedObject, member: Member, path: string, source: GeneratorSource): MessageElement[] {
-    if (this.held.size >= this.limit) {
+    if (this.held.size - this.closed.size >= this.limit) {
       void source.return?.();
       throw makeError(ErrorCode.OutOfSystemResource, "the session has too many generators");
     }
@@ -51,7 +55,7 @@ export class Generators {
     }
     held.used = Date.now();
     if (entry.error !== 0) {
-      held.ending ??= entry.error === ErrorCode.StopIteration ? ErrorCode.StopIteration : ErrorCode.OperationAborted;
+      this.close(index, held, entry.error);
       await this.finish(held, entry.error);
       return [numberElement("return", "int32", 0)];
     }
@@ -65,9 +69,22 @@ export class Generators {
       if (step.done) throw makeError(ErrorCode.StopIteration, "");
       return [generator?.gives ? object.packer.value(type, step.value, "return") : numberElement("return", "int32", 0)];
     } catch (error) {
-      this.held.delete(index);
+      this.forget(index);
       throw error;
     }
+  }
+
+  private close(index: number, held: Held, code: number): void {
+    if (held.ending !== undefined) return;
+    held.ending = code === ErrorCode.StopIteration ? ErrorCode.StopIteration : ErrorCode.OperationAborted;
+    this.closed.add(index);
+    const [oldest] = this.closed;
+    if (this.closed.size > mostClosed && oldest !== undefined) this.forget(oldest);
+  }
+
+  private forget(index: number): void {
+    this.held.delete(index);
+    this.closed.delete(index);
   }
 
   private async finish({ source }: Held, code: number): Promise<void> {
@@ -85,7 +102,7 @@ export class Generators {
     for (const [index, one] of this.held) {
       const kept = one.ending === undefined ? this.timeout : Math.min(keptAfterClose, this.timeout);
       if (now - one.used < kept) continue;
-      this.held.delete(index);
+      this.forget(index);
       if (one.ending === undefined) void this.finish(one, ErrorCode.AbortOperation);
     }
   }
@@ -93,7 +110,7 @@ export class Generators {
   clear(isOver: (path: string) => boolean = () => true): void {
     for (const [index, one] of this.held) {
       if (!isOver(one.path)) continue;
-      this.held.delete(index);
+      this.forget(index);
       if (one.ending === undefined) void this.finish(one, ErrorCode.StopIteration);
     }
   }
