@@ -195,6 +195,14 @@ class Run(unittest.TestCase):
         self.program("sleep 60 & wait\n")
         self.assertEqual(mutate.run("a_test", 0.3), "a_test: does not end")
 
+    def test_tells_for_each_mutant_what_finds_it(self):
+        self.program('[ "$RR_MUTANT" = 2 ] || exit 0\necho "[  FAILED  ] Reader.EndsEarly"; exit 1\n')
+        mutant = next(mutate.mutants_of("runtime/cpp/src/codec/f.cpp", SOURCE))
+        mutate.PROGRAMS["a_test"] = ["codec"]
+        self.addCleanup(mutate.PROGRAMS.pop, "a_test")
+        found = mutate.find_all({1: mutant, 2: mutant, 3: mutant}, {"a_test": 1.0}, 2)
+        self.assertEqual(dict(found), {1: "", 2: "a_test: Reader.EndsEarly", 3: ""})
+
     def test_is_silent_when_all_pass(self):
         self.program("exit 0\n")
         self.assertEqual(mutate.run("a_test", 20), "")
