@@ -13,16 +13,17 @@ namespace {
 
 struct VerbAccess {
   Verb verb;
-  Allowed access;
+  unsigned access;  // any of these
 };
-constexpr std::array<VerbAccess, 8> verbs_of_members{{{Verb::get, reading},
+constexpr std::array<VerbAccess, 9> verbs_of_members{{{Verb::get, reading},
                                                       {Verb::stream, reading},
                                                       {Verb::confirm, reading},
                                                       {Verb::set, writing},
                                                       {Verb::poke, writing},
                                                       {Verb::send, writing},
                                                       {Verb::call, calling},
-                                                      {Verb::next, calling}}};
+                                                      {Verb::next, calling},
+                                                      {Verb::connect, reading | writing}}};
 
 /// A level of a filter for a pattern of an export file.
 std::string level_of(const std::string& pattern) {

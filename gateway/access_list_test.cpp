@@ -35,8 +35,8 @@ std::string rule(const std::string& path, const std::string& members, const std:
 TEST(GatewayAccessList, HasWhatAllUsersMay) {
   const AccessList list = access_list({file_of("r1", "robot1", rule("", "\"pose\"", "\"read\""))});
   EXPECT_THAT(list.everybody.publish,
-              ElementsAre("rr/hall/r1/arm/$confirm/%u/pose", "rr/hall/r1/arm/$get/%u/pose",
-                          "rr/hall/r1/arm/$stream/%u/pose"));
+              ElementsAre("rr/hall/r1/arm/$confirm/%u/pose", "rr/hall/r1/arm/$connect/%u/pose",
+                          "rr/hall/r1/arm/$get/%u/pose", "rr/hall/r1/arm/$stream/%u/pose"));
   EXPECT_THAT(list.everybody.receive,
               ElementsAre("rr/$reply/%u/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$attributes",
                           "rr/hall/r1/arm/$closed", "rr/hall/r1/arm/$def/#", "rr/hall/r1/arm/$life",
@@ -56,10 +56,11 @@ TEST(GatewayAccessList, HasWhatSingleUsersMay) {
   EXPECT_THAT(
       alice.publish,
       ElementsAre(
-          "rr/hall/r1/arm/$call/alice/+/axis[2]/+", "rr/hall/r1/arm/$next/alice/+/axis[2]/+",
-          "rr/hall/r1/arm/$object/alice/+", "rr/hall/r1/arm/$object/alice/+/axis[2]",
-          "rr/hall/r1/arm/$poke/alice/+/axis[2]/+", "rr/hall/r1/arm/$send/alice/+/axis[2]/+",
-          "rr/hall/r1/arm/$session/alice", "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
+          "rr/hall/r1/arm/$call/alice/+/axis[2]/+", "rr/hall/r1/arm/$connect/alice/+/axis[2]/+",
+          "rr/hall/r1/arm/$next/alice/+/axis[2]/+", "rr/hall/r1/arm/$object/alice/+",
+          "rr/hall/r1/arm/$object/alice/+/axis[2]", "rr/hall/r1/arm/$poke/alice/+/axis[2]/+",
+          "rr/hall/r1/arm/$send/alice/+/axis[2]/+", "rr/hall/r1/arm/$session/alice",
+          "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
   EXPECT_THAT(alice.receive,
               ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$attributes",
                           "rr/hall/r1/arm/$closed", "rr/hall/r1/arm/$def/#", "rr/hall/r1/arm/$life",
@@ -107,6 +108,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r1/$life\n"
             "topic read rr/hall/r1/arm/$call/#\n"
             "topic read rr/hall/r1/arm/$confirm/#\n"
+            "topic read rr/hall/r1/arm/$connect/#\n"
             "topic read rr/hall/r1/arm/$get/#\n"
             "topic read rr/hall/r1/arm/$lock/#\n"
             "topic read rr/hall/r1/arm/$next/#\n"
@@ -124,6 +126,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r2/$life\n"
             "topic read rr/hall/r2/arm/$call/#\n"
             "topic read rr/hall/r2/arm/$confirm/#\n"
+            "topic read rr/hall/r2/arm/$connect/#\n"
             "topic read rr/hall/r2/arm/$get/#\n"
             "topic read rr/hall/r2/arm/$lock/#\n"
             "topic read rr/hall/r2/arm/$next/#\n"
@@ -135,6 +138,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r2/arm/$stream/#\n"
             "\n"
             "pattern write rr/hall/r2/arm/$confirm/%u/+\n"
+            "pattern write rr/hall/r2/arm/$connect/%u/+\n"
             "pattern write rr/hall/r2/arm/$get/%u/+\n"
             "pattern write rr/hall/r2/arm/$stream/%u/+\n"
             "pattern read rr/$reply/%u/#\n"
@@ -183,6 +187,7 @@ authorization {
         "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.pose",
         "_INBOX.eve.>",
         "rr.hall.r1.arm.$confirm.eve.pose",
+        "rr.hall.r1.arm.$connect.eve.pose",
         "rr.hall.r1.arm.$get.eve.pose",
         "rr.hall.r1.arm.$stream.eve.pose"]
       subscribe: [

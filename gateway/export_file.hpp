@@ -87,11 +87,11 @@ bool fits(std::string_view pattern, std::string_view text);
 /// The same for paths of objects, where `*` stands for letters of one step: `tools[*]` is no object
 /// below a tool.
 bool path_fits(std::string_view pattern, std::string_view path);
-/// The first rule that allows it; null when none does. For `locking` the member does not matter.
-/// `user` is empty for what is published to
-/// all: then rules for single users do not count.
+/// The first rule that allows any of `access`, which is Allowed, added up; null when none does. For
+/// `locking` alone the member does not matter. `user` is empty for what is published to all: then
+/// rules for single users do not count.
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,
-                            std::string_view path, std::string_view member, Allowed access);
+                            std::string_view path, std::string_view member, unsigned access);
 
 /// Who a user is at the service: the entry of the client, without one that of the broker's user,
 /// without that the login of the gateway itself.

@@ -11,7 +11,7 @@ bool is_for(const ExportRule& rule, std::string_view user) {
 }
 
 bool allows(const ExportRule& rule, std::string_view user, std::string_view path,
-            std::string_view member, Allowed access) {
+            std::string_view member, unsigned access) {
   if ((rule.access & access) == 0 || !is_for(rule, user) || !path_fits(rule.path, path)) {
     return false;
   }
@@ -68,7 +68,7 @@ bool is_user(const ExportedServiceOptions& service, std::string_view user) {
 }
 
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,
-                            std::string_view path, std::string_view member, Allowed access) {
+                            std::string_view path, std::string_view member, unsigned access) {
   for (const ExportRule& rule : service.rules) {
     if (allows(rule, user, path, member, access)) return &rule;
   }

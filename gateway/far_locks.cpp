@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "rr/definition.hpp"
 #include "rr/error.hpp"
 
 namespace rr::gateway {
@@ -63,6 +64,16 @@ void FarLocks::keep(LockRequest request, Answer answer) {
                                   self->unanswered_.fetch_sub(1);
                                   answer(error, message.find("waiting").has_value());
                                 });
+}
+
+void FarLocks::check_connect(const ConnectAttempt& request) {
+  if (!*is_robot_there_) return;
+  try {
+    sessions_->wait(request.client, {address_, Verb::connect, path_below_root(request.path),
+                                     std::string(request.member->name)});
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::object_locked_error) throw;
+  }
 }
 
 }  // namespace rr::gateway

@@ -14,18 +14,25 @@ namespace rr::gateway {
 /// client's own session there.
 class FarLocks final : public LockKeeper, public std::enable_shared_from_this<FarLocks> {
  public:
-  FarLocks(std::shared_ptr<FarSessions> sessions, ServiceAddress address)
-      : sessions_(std::move(sessions)), address_(std::move(address)) {}
+  /// `is_robot_there` is set by the owner, on any thread.
+  FarLocks(std::shared_ptr<FarSessions> sessions, ServiceAddress address,
+           std::shared_ptr<const std::atomic<bool>> is_robot_there)
+      : sessions_(std::move(sessions)),
+        address_(std::move(address)),
+        is_robot_there_(std::move(is_robot_there)) {}
 
   /// Throws rr::Error: out_of_system_resource when too many requests have no answer yet.
   void keep(LockRequest request, Answer answer) override;
   void set_user(std::uint32_t client, const std::string& user) override {
     sessions_->set_user(client, user);
   }
+  /// Asks the robot; one that does not answer has no locks.
+  void check_connect(const ConnectAttempt& request) override;
 
  private:
   const std::shared_ptr<FarSessions> sessions_;
   const ServiceAddress address_;
+  const std::shared_ptr<const std::atomic<bool>> is_robot_there_;
   std::atomic<std::size_t> unanswered_{0};
 };
 

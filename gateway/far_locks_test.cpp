@@ -78,6 +78,40 @@ TEST_F(FarLocksTest, OfAUserKeepOutOtherUsers) {
   EXPECT_EQ(use(near), ErrorCode::none);
 }
 
+TEST_F(FarLocksTest, KeepOthersFromConnectingPipesAndWires) {
+  const auto connect_all = [](const dynamic::Client& client) {
+    std::vector<ErrorCode> codes;
+    for (const char* pipe : {"samples", "commands", "both"}) {
+      codes.push_back(code_of([&] { return client->pipe(pipe).connect(); }));
+    }
+    for (const char* wire : {"force", "target"}) {
+      codes.push_back(code_of([&] { return client->wire(wire).connect(); }));
+    }
+    return codes;
+  };
+  const std::vector<ErrorCode> none(5, ErrorCode::none);
+  const std::vector<ErrorCode> all(5, ErrorCode::object_locked_error);
+  EXPECT_EQ(connect_all(two), none);
+  lock(one->stub(), LockOwner::session);
+  auto late = rig.connect();
+  EXPECT_EQ(connect_all(late), all);
+  EXPECT_EQ(connect_all(one), none);
+  unlock(one->stub());
+  EXPECT_EQ(connect_all(late), none);
+}
+
+TEST_F(FarLocksTest, ARobotThatIsNotThereIsNotAskedForThem) {
+  lock(one->stub(), LockOwner::session);
+  rig.stop_export();
+  auto late = rig.connect();
+  ASSERT_TRUE(comes_true(
+      [&] { return code_of([&] { return late->wire("force").connect(); }) == ErrorCode::none; }));
+  const char* const requests = "rr/hall/robot/bench/$connect/hub/#";
+  const std::size_t before = broker.published(requests);
+  EXPECT_EQ(code_of([&] { return late->pipe("both").connect(); }), ErrorCode::none);
+  EXPECT_EQ(broker.published(requests), before);
+}
+
 TEST_F(FarLocksTest, AreOfSingleObjects) {
   const auto tool = one->object("tools", "left hand");
   lock(tool.stub(), LockOwner::session);

@@ -34,7 +34,8 @@ FarService::FarService(ServedService served, Shared shared)
       address_(served_.address),
       topic_(service_topic(address_)),
       shared_(std::move(shared)),
-      users_(served_.users_file.empty() ? nullptr : PasswordUsers::from_file(served_.users_file)) {
+      users_(served_.users_file.empty() ? nullptr : PasswordUsers::from_file(served_.users_file)),
+      is_robot_there_(std::make_shared<std::atomic<bool>>(true)) {
   // Mistakes are told now, and not when the robot's definition comes.
   if (!served_.rights_file.empty()) static_cast<void>(Rights::from_file(served_.rights_file));
 }
@@ -82,9 +83,7 @@ bool FarService::take(const Message& message) {
   } else if (message.topic == topic_ + "/$closed") {
     for (const Closed& closed : closed_.take(message)) take_closed(closed);
   } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
-    const std::string before = std::exchange(gateway_life_, text_of(message.payload));
-    // Requests that it did not get are not waited for.
-    if (gateway_life_ == "up" && before != "up") reconnected();
+    take_gateway_life(message);
   } else if (message.topic.starts_with(topic_ + "/$def")) {
     take_definition(message, std::string_view(message.topic).substr(topic_.size() + 5));
   }
@@ -100,12 +99,25 @@ bool FarService::take_reply(const Message& message) {
   return false;
 }
 
+void FarService::take_gateway_life(const Message& message) {
+  const std::string before = std::exchange(gateway_life_, text_of(message.payload));
+  note_lives();
+  // Requests that it did not get are not waited for.
+  if (gateway_life_ == "up" && before != "up") reconnected();
+}
+
 void FarService::take_life(const Message& message) {
   const std::string before = std::exchange(robot_life_, text_of(message.payload));
+  note_lives();
   if (robot_life_ == before) return;
   const auto reason = message.find("reason");
   shared_.log(reason ? LogLevel::warning : LogLevel::info,
               topic_ + " is " + robot_life_ + (reason ? ": " + std::string(*reason) : ""));
+}
+
+void FarService::note_lives() {
+  const auto may_be_there = [](const std::string& life) { return life.empty() || life == "up"; };
+  *is_robot_there_ = may_be_there(gateway_life_) && may_be_there(robot_life_);
 }
 
 void FarService::take_definition(const Message& message, std::string_view rest) {
@@ -170,7 +182,7 @@ ServiceOptions FarService::service_options() const {
   options.users = users_;
   options.rights_file = served_.rights_file;
   // From the first request on: a client may connect as soon as the service is registered.
-  options.lock_keeper = std::make_shared<FarLocks>(sessions_, address_);
+  options.lock_keeper = std::make_shared<FarLocks>(sessions_, address_, is_robot_there_);
   options.on_client_connected = [sessions = sessions_](const ServiceClient& client) {
     sessions->begin(client.endpoint);
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -71,6 +72,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
   };
 
   bool take_reply(const Message& message);
+  void take_gateway_life(const Message& message);
+  void note_lives();
   void take_life(const Message& message);
   void take_definition(const Message& message, std::string_view rest);
   void take_attributes(const Message& message);
@@ -129,6 +132,7 @@ class FarService : public std::enable_shared_from_this<FarService> {
   std::optional<Service> service_;
   std::string robot_life_;
   std::string gateway_life_;
+  const std::shared_ptr<std::atomic<bool>> is_robot_there_;    // as far as is known
   std::map<std::string, std::unique_ptr<FarStream>> streams_;  // by topic
   std::map<std::string, FarWire> wires_;                       // by topic
   std::map<std::string, dynamic::WeakServedObject> objects_;   // by path

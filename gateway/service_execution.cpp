@@ -90,6 +90,40 @@ void get(const dynamic::Object& object, const dynamic::MemberDescription& member
   }
 }
 
+/// The error if it is of a lock; any other says nothing of locks.
+std::exception_ptr lock_error(const std::exception_ptr& error) {
+  try {
+    if (error) std::rethrow_exception(error);
+  } catch (const Error& reason) {
+    if (reason.code() == ErrorCode::object_locked_error) return error;
+  } catch (...) {
+  }
+  return nullptr;
+}
+
+// What a lock keeps out is refused a peek as well. A pipe has nothing like that: an endpoint is
+// connected and closed.
+void check_connect(const dynamic::Object& object, const dynamic::MemberDescription& member,
+                   const Executed& done) {
+  if (member.kind == MemberKind::pipe) {
+    object.pipe(member.name)
+        .async_connect([done](const std::exception_ptr& error, dynamic::PipeEndpoint end) {
+          done(lock_error(error), {});
+          if (!error) end.close();
+        });
+    return;
+  }
+  const dynamic::Wire wire = object.wire(member.name);
+  const auto seen = [done](const std::exception_ptr& error, const Timed<dynamic::Value>&) {
+    done(lock_error(error), {});
+  };
+  if ((member.access & writeonly) != 0) {
+    wire.async_peek_out(seen);
+  } else {
+    wire.async_peek_in(seen);
+  }
+}
+
 void set(const dynamic::Object& object, const dynamic::MemberDescription& member,
          const Message& message, const Executed& done) {
   const dynamic::Value value = decode_element(object.types(), member.type, message.payload);
@@ -175,6 +209,8 @@ void ServiceExporter::perform(const RequestTopic& request, const Message& messag
   } else if (request.verb == Verb::poke) {
     object.wire(member.name)
         .async_poke_out(decode_element(definitions, member.type, message.payload), finish(done));
+  } else if (request.verb == Verb::connect) {
+    check_connect(object, member, done);
   } else if (request.verb == Verb::send) {
     send_packets(request, message, object, done);
   } else {

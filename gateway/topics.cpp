@@ -10,7 +10,7 @@
 namespace rr::gateway {
 namespace {
 
-constexpr std::array<std::pair<Verb, std::string_view>, 11> verbs{{{Verb::get, "get"},
+constexpr std::array<std::pair<Verb, std::string_view>, 12> verbs{{{Verb::get, "get"},
                                                                    {Verb::set, "set"},
                                                                    {Verb::call, "call"},
                                                                    {Verb::poke, "poke"},
@@ -19,6 +19,7 @@ constexpr std::array<std::pair<Verb, std::string_view>, 11> verbs{{{Verb::get, "
                                                                    {Verb::object, "object"},
                                                                    {Verb::stream, "stream"},
                                                                    {Verb::confirm, "confirm"},
+                                                                   {Verb::connect, "connect"},
                                                                    {Verb::lock, "lock"},
                                                                    {Verb::session, "session"}}};
 

@@ -54,13 +54,14 @@ enum class Verb : std::uint8_t {
   object,   ///< the type of the object at a path
   stream,   ///< records of a stream from a number on
   confirm,  ///< a reader has a stream up to a number
+  connect,  ///< whether a lock keeps a client from connecting a wire or pipe
   lock,     ///< an object is locked or released, or its monitor is entered or left
   session,  ///< begin and end of a client's session at the robot, and that it is in use
 };
 /// All of them.
-inline constexpr std::array all_verbs{Verb::get,     Verb::set,  Verb::call,   Verb::poke,
-                                      Verb::send,    Verb::next, Verb::object, Verb::stream,
-                                      Verb::confirm, Verb::lock, Verb::session};
+inline constexpr std::array all_verbs{Verb::get,     Verb::set,     Verb::call,   Verb::poke,
+                                      Verb::send,    Verb::next,    Verb::object, Verb::stream,
+                                      Verb::confirm, Verb::connect, Verb::lock,   Verb::session};
 /// Packets that one request to send some may have.
 inline constexpr std::size_t most_packets = 256;
 /// Items of a memory that one request may read; gateways ask for less at a time.

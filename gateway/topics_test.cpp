@@ -75,6 +75,15 @@ TEST(GatewayTopics, LocksAreForObjectsAndSessionsForAService) {
   EXPECT_EQ(session->user, "alice");
 }
 
+TEST(GatewayTopics, ConnectingIsOfAMember) {
+  const std::string topic = request_topic(arm, {Verb::connect, "alice", "tools[left]", "force"});
+  EXPECT_EQ(topic, "rr/hall/robot-1/arm/$connect/alice/tools[left]/force");
+  const auto connect = parse_request_topic(arm, topic);
+  ASSERT_TRUE(connect.has_value());
+  EXPECT_EQ(connect->verb, Verb::connect);
+  EXPECT_EQ(connect->member, "force");
+}
+
 TEST(GatewayTopics, AnswersGoToTheUserOnly) {
   EXPECT_TRUE(is_reply_topic(reply_topic("alice", "7f"), "alice"));
   EXPECT_FALSE(is_reply_topic(reply_topic("bob", "7f"), "alice"));

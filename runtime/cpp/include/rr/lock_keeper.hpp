@@ -15,6 +15,8 @@
 /// as that of a gateway, whose own locks would not keep out the other one's clients.
 namespace RR_VISIBLE rr {
 
+struct Member;
+
 /// What a client asks for (rr/locks.hpp).
 struct LockRequest {
   /// Which of the operations of a session.
@@ -31,6 +33,13 @@ struct LockRequest {
   std::uint32_t client = 0;                        ///< number of its endpoint in this node
   /// Of enter_monitor: how long it waits for the monitor; negative: as long as it takes.
   std::chrono::milliseconds timeout{0};
+};
+
+/// A wire, or an endpoint of a pipe, that a client wants to connect.
+struct ConnectAttempt {
+  std::string path;                ///< of the object, as Stub::rr_path()
+  const Member* member = nullptr;  ///< the pipe or wire; never null, and there during the call
+  std::uint32_t client = 0;        ///< number of its endpoint in this node
 };
 
 /// Answers requests for locks and monitors in place of the service: ServiceOptions::lock_keeper.
@@ -52,6 +61,11 @@ class LockKeeper {
     static_cast<void>(client);
     static_cast<void>(user);
   }
+  /// Throws what the client gets when a lock keeps it from connecting a pipe or wire, and does
+  /// nothing otherwise, as it does by default. Called before anything is connected, on a thread of
+  /// the node, and not for members with `nolock`, nor for a wire that is connected already. It may
+  /// wait; other requests of the client wait with it.
+  virtual void check_connect(const ConnectAttempt& request) { static_cast<void>(request); }
 };
 
 }  // namespace rr

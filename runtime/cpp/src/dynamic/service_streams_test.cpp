@@ -4,9 +4,12 @@
 
 #include <atomic>
 #include <future>
+#include <mutex>
 #include <semaphore>
 
 #include "rr/error.hpp"
+#include "rr/lock_keeper.hpp"
+#include "rr/node.hpp"
 #include "runtime/cpp/src/dynamic/rig.hpp"
 #include "runtime/cpp/src/dynamic/testing.hpp"
 
@@ -251,6 +254,74 @@ TEST_P(DynamicStreams, HaveMonitors) {
     EXPECT_FALSE(free->try_acquire());
   }
   EXPECT_TRUE(free->try_acquire_for(limit));
+}
+
+constexpr const char* lab_definition = R"(service test.lab
+stdver 0.10
+object Lab
+  pipe double samples
+  pipe double notes [nolock]
+  wire double level [readonly]
+  wire double light [nolock]
+end
+)";
+
+// Keeps all locks in its hands, and notes what it is asked.
+class Strict final : public LockKeeper {
+ public:
+  void keep(LockRequest /*request*/, Answer answer) override { answer(nullptr, false); }
+  void check_connect(const ConnectAttempt& attempt) override {
+    const std::scoped_lock lock(mutex_);
+    asked_.push_back(attempt.path + "." + std::string(attempt.member->name));
+    client_ = attempt.client;
+    if (is_locked) throw Error(ErrorCode::object_locked_error, "by another robot");
+  }
+  std::vector<std::string> asked() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(asked_, {});
+  }
+  std::uint32_t client() {
+    const std::scoped_lock lock(mutex_);
+    return client_;
+  }
+
+  std::atomic<bool> is_locked{true};
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> asked_;
+  std::uint32_t client_ = 0;
+};
+
+TEST(DynamicLocks, AKeeperIsAskedBeforeAPipeOrWireIsConnected) {
+  ServedObject lab(Definitions({lab_definition}), "test.lab.Lab");
+  lab.wire("level").set_in(1.5);
+  const auto keeper = std::make_shared<Strict>();
+  Node server;
+  Node node;
+  const Service service = register_service(server, "lab", lab, {.lock_keeper = keeper});
+  const Client client =
+      connect(node, "rr+tcp://localhost:" + std::to_string(server.listen_tcp(0)) + "/?service=lab");
+
+  EXPECT_EQ(error_text([&] { client->pipe("samples").connect(); }), "151: by another robot");
+  EXPECT_EQ(error_text([&] { client->wire("level").connect(); }), "151: by another robot");
+  EXPECT_THAT(keeper->asked(), ElementsAre("lab.samples", "lab.level"));
+  EXPECT_EQ(keeper->client(), service->clients().front().endpoint);
+  EXPECT_EQ(lab.pipe("samples").endpoint_count(), 0U);
+  EXPECT_EQ(lab.wire("level").connection_count(), 0U);
+
+  const PipeEndpoint notes = client->pipe("notes").connect();
+  const WireConnection light = client->wire("light").connect();
+  EXPECT_TRUE(notes.is_open());
+  EXPECT_TRUE(light.is_open());
+  EXPECT_TRUE(keeper->asked().empty());
+
+  keeper->is_locked = false;
+  const PipeEndpoint samples = client->pipe("samples").connect();
+  const WireConnection level = client->wire("level").connect();
+  EXPECT_EQ(lab.pipe("samples").endpoint_count(), 1U);
+  EXPECT_EQ(lab.wire("level").connection_count(), 1U);
+  EXPECT_THAT(keeper->asked(), ElementsAre("lab.samples", "lab.level"));
 }
 
 }  // namespace

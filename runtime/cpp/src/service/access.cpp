@@ -220,6 +220,12 @@ bool ServerEndpoint::ask_keeper(LockKeeper& keeper, const Question& question) {
   return true;
 }
 
+void ServerEndpoint::ask_keeper_to_connect(const Question& question, const Member& member) const {
+  auto* const keeper = host_->lock_keeper();
+  if (keeper == nullptr || (member.access & nolock) != 0) return;
+  keeper->check_connect({std::string(question.entry.service_path), &member, client_.endpoint});
+}
+
 LateAnswer ServerEndpoint::late_operation(const Question& question) {
   const Entry& entry = question.entry;
   return {entry.type,

@@ -104,6 +104,7 @@ Pipes::End Pipes::open(const Question& question, const ServedObject& object, con
 void Pipes::connect(const Question& question) {
   const auto object = endpoint_.find_object(question.entry.service_path);
   const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
+  endpoint_.ask_keeper_to_connect(question, member);
   const End end = open(question, *object, member);
   try {
     // What was released meanwhile has not been found among the ends.

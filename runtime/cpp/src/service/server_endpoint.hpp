@@ -105,6 +105,10 @@ class ServerEndpoint final : public channel::Receiver,
   /// The requests of this session that are answered later.
   [[nodiscard]] const std::shared_ptr<OwedAnswers>& owed_answers() const { return owed_answers_; }
 
+  /// Throws what the service's lock keeper says against a client that connects a pipe or wire. May
+  /// wait, so that what was found before has to be looked for again.
+  void ask_keeper_to_connect(const Question& question, const Member& member) const;
+
   /// Who is logged in; null for nobody.
   [[nodiscard]] std::shared_ptr<const User> user() const;
   /// What that allows.

@@ -89,6 +89,7 @@ void Wires::answer_packet(const Question& question, const ServedObject& object,
 void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                            const Member& member) {
   if (answer_change(question, *object, member)) return;
+  if (!table_.find(object->path, member.name)) endpoint_.ask_keeper_to_connect(question, member);
   std::shared_ptr<ServedWireEnd> end;
   std::uint64_t slots = 0;
   while (!(end = connect(question, object, member, slots))) {
