@@ -5,6 +5,7 @@ import importlib.machinery
 import importlib.util
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -160,6 +161,18 @@ class Switches(unittest.TestCase):
         self.assertEqual(mutate.blamed(said, "runtime/cpp/src/codec/a.cpp", lines), {2})
 
 
+@unittest.skipIf(shutil.which("clang++-19") is None, "clang 19 is not installed")
+class LockRules(unittest.TestCase):
+    def test_find_a_lock_that_is_left_out(self):
+        source = ('#include "rr/mutex.hpp"\nusing rr::MutexLock;\n'
+                  "class Counter {\n public:\n  void add() {\n    const MutexLock lock(mutex_);\n    STATEMENT\n  }\n\n"
+                  " private:\n  rr::Mutex mutex_;\n  int count_ RR_GUARDED_BY(mutex_) = 0;\n  int other_ = 0;\n};\n")
+        for statement, is_found in [("++count_;", True), ("++other_;", False)]:
+            mutants = mutate.mutants_of("f.cpp", source.replace("STATEMENT", statement))
+            [mutant] = [m for m in mutants if m.kind == "lock"]
+            self.assertEqual(mutate.breaks_lock_rules(mutant), is_found, statement)
+
+
 class Draw(unittest.TestCase):
     def test_is_the_same_for_a_seed_and_leaves_tests_out(self):
         with tempfile.TemporaryDirectory() as name:
@@ -173,6 +186,20 @@ class Draw(unittest.TestCase):
             self.assertEqual({m.file for m in first}, {"runtime/cpp/src/codec/a.cpp", "runtime/cpp/src/codec/b.hpp"})
             # The kinds take turns, whichever there is most of.
             self.assertEqual(len({m.kind for m in first[:7]}), 7)
+
+
+class Again(unittest.TestCase):
+    def test_a_survivor_is_found_where_it_is_now(self):
+        with tempfile.TemporaryDirectory() as name:
+            tree = pathlib.Path(name)
+            one, _, two = [m for m in mutate.mutants_of("f.cpp", SOURCE) if m.kind == "constant"][2:5]
+            before = mutate.result_of(two, "", True)
+            self.assertIsNone(mutate.mutant_again(tree, before))
+            (tree / "f.cpp").write_text("\n\n\n" + SOURCE)
+            self.assertEqual(mutate.mutant_again(tree, before).line, two.line + 3)
+            (tree / "f.cpp").write_text(SOURCE.replace("  b = 2;\n", ""))
+            self.assertIsNone(mutate.mutant_again(tree, before))
+            self.assertEqual(mutate.mutant_again(tree, mutate.result_of(one, "", True)).line, one.line)
 
 
 class Run(unittest.TestCase):
@@ -202,6 +229,10 @@ class Run(unittest.TestCase):
         self.addCleanup(mutate.PROGRAMS.pop, "a_test")
         found = mutate.find_all({1: mutant, 2: mutant, 3: mutant}, {"a_test": 1.0}, 2)
         self.assertEqual(dict(found), {1: "", 2: "a_test: Reader.EndsEarly", 3: ""})
+
+    def test_is_over_a_channel(self):
+        self.program('[ "$ROBDEF_TEST_CHANNEL" = ws ] && exit 1 || exit 0\n')
+        self.assertEqual([mutate.run(name, 20) for name in ["a_test", "a_test over ws"]], ["", "a_test over ws: ended with 1"])
 
     def test_is_silent_when_all_pass(self):
         self.program("exit 0\n")

@@ -16,6 +16,8 @@ constexpr Nanoseconds clock_cost = 40;
 // So many looks at the clock without a step between them are a loop that waits for another thread.
 constexpr std::uint64_t reads_of_a_loop = 200;
 constexpr std::size_t most_notes = 200;
+// A run has some fifty thousand of them.
+constexpr std::uint64_t most_steps = 20'000'000;
 
 __thread Scheduler* running = nullptr;
 __thread Scheduler::Thread* this_thread = nullptr;
@@ -60,6 +62,7 @@ void Scheduler::point(const char* what, const void* object, std::int64_t amount,
   const Spared spared;
   clock_reads_ = 0;
   trace_.add({now_, this_thread->number, what, object, amount, caller});
+  if (trace_.count() == most_steps) fail("it goes round in circles");
   now_ += step_cost;
   if (now_ >= next_due_) run_due();
   if (stalls_ < turns_.most_stalls && random_.once_in(turns_.stalls_once_in)) {

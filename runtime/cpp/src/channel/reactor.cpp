@@ -46,15 +46,20 @@ void Reactor::start() {
 void Reactor::stop() {
   flusher_.stop();
   std::list<std::thread> threads;
+  // What is posted for a connection may keep it alive. It goes without the lock, which its
+  // destructor takes.
+  std::deque<Posted> posted;
+  std::deque<Posted> waiting;
   {
     const MutexLock lock(mutex_);
     is_stopping_ = true;
     is_stay_over_ = true;
     threads.swap(threads_);
     ended_.clear();
-    for (std::deque<Posted>* const queue : {&posted_, &waiting_}) {
-      for (Posted& posted : *queue) late_.add(std::move(posted.work));
-      queue->clear();
+    posted.swap(posted_);
+    waiting.swap(waiting_);
+    for (std::deque<Posted>* const queue : {&posted, &waiting}) {
+      for (Posted& each : *queue) late_.add(std::move(each.work));
     }
   }
   idle_.notify_all();

@@ -541,5 +541,17 @@ TEST(Reactor, WhatIsRetiredGoesWithoutItsLock) {
   reactor.retire(std::make_shared<Timed>(reactor));
 }
 
+TEST(Reactor, WhatIsPostedGoesWithoutItsLock) {
+  Reactor reactor(4);
+  auto last = std::make_shared<Timed>(reactor);
+  const std::weak_ptr<Timed> watch = last;
+  std::atomic<bool> has_run{false};
+  // There is no thread that could do it before the end.
+  reactor.post_for(std::move(last), [&] { has_run = true; });
+  reactor.stop();
+  EXPECT_TRUE(has_run);
+  EXPECT_TRUE(watch.expired());
+}
+
 }  // namespace
 }  // namespace rr::channel
