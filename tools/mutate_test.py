@@ -57,6 +57,12 @@ class Places(unittest.TestCase):
         self.assertEqual(changes("order"),
                          [(7, "list_.clear();\n  list_.push_back(7);", "list_.push_back(7);\n  list_.clear();")])
 
+    def test_statements_with_nothing_but_a_function_in_common_are_not_swapped(self):
+        self.assertTrue(mutate.may_depend("list_.clear();", "list_.push_back(7);"))
+        self.assertTrue(mutate.may_depend("a = b;", "f(a);"))
+        self.assertFalse(mutate.may_depend("names_.clear();", "values_.clear();"))
+        self.assertFalse(mutate.may_depend("memcpy(&last, end, 8);", "memcpy(to, &first, 8);"))
+
     def test_a_mutant_has_one_change(self):
         for mutant in mutate.mutants_of("f.cpp", SOURCE):
             at = SOURCE.find(mutant.before)

@@ -9,6 +9,7 @@
 #include <future>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "rr/async.hpp"
@@ -221,6 +222,43 @@ TEST(LosingARight, OfAMonitorLeavesIt) {
   EXPECT_TRUE(service.object->free.try_acquire_for(std::chrono::seconds(10)));
   EXPECT_EQ(alice.operation("MonitorEnter", "guarded", element<std::int32_t>("timeout", 0)),
             refused);
+}
+
+// A client that says so of the service's endpoint has no session any more.
+TEST(AnInvalidEndpoint, EndsTheSessionAndItsConnection) {
+  GuardedService service;
+  GuardedClient alice(service, "alice");
+  const auto begin = std::chrono::steady_clock::now();
+  const RawClient::Request request{.type = EntryType::event_req,
+                                   .path = "guarded",
+                                   .member = "noticed",
+                                   .error = code(ErrorCode::invalid_endpoint)};
+  alice.raw().send({&request, 1});
+  EXPECT_FALSE(alice.raw().receive(20'000).has_value());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  EXPECT_THAT(service.service->clients(), IsEmpty());
+}
+
+// A client that waits is told to ask again every 5 s.
+TEST(WaitingForAMonitor, EndsWithItsTimeForAClientThatDoesNotAskAgain) {
+  GuardedService service;
+  GuardedClient alice(service, "alice");
+  GuardedClient bob(service, "bob");
+  GuardedClient chief(service, "chief");
+  const auto enter = [](GuardedClient& client, std::int32_t timeout) {
+    const auto answer = client.answer(EntryType::client_session_op_req, "guarded", "MonitorEnter",
+                                      element("timeout", timeout));
+    return answer.error == 0 ? answer.value_of<std::string>("return") : std::string("refused");
+  };
+  EXPECT_EQ(enter(alice, 0), "OK");
+  EXPECT_EQ(enter(bob, 5'500), "Continue");
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  auto entered = std::async(std::launch::async, [&] { return enter(chief, 20'000); });
+  EXPECT_EQ(entered.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  EXPECT_EQ(alice.operation("MonitorExit"), 0);
+  ASSERT_EQ(entered.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  EXPECT_EQ(entered.get(), "OK");
+  EXPECT_EQ(bob.operation("MonitorContinueEnter"), code(ErrorCode::operation_timeout));
 }
 
 }  // namespace

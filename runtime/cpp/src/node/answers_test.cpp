@@ -262,6 +262,25 @@ TEST(Answers, OfTheWrongTypeToEachKindOfRequestAreDropped) {
 }
 
 // A client that answers a callback with something else, which a service of ours has called.
+TEST(Answers, OfAClientToWhatAnyNodeMayBeAsked) {
+  RawService service(std::string(rr_definition.text), "test.counter.Counter");
+  Node node;
+  auto counter = node.connect<CounterStub>(service.url());
+  constexpr auto unknown = static_cast<EntryType>(199);
+  std::uint32_t id = 1000;
+  for (const EntryType type : {EntryType::get_node_info, EntryType::node_check_capability,
+                               EntryType::endpoint_check_capability, unknown}) {
+    service.send({.type = type, .path = "", .member = "", .id = ++id});
+  }
+  ASSERT_TRUE(eventually([&] { return service.answers().size() == 4; }));
+  constexpr auto refusal = static_cast<std::uint16_t>(ErrorCode::protocol_error);
+  using Given = std::vector<std::pair<EntryType, std::uint16_t>>;
+  EXPECT_EQ(service.answers(), (Given{{EntryType::get_node_info_ret, 0},
+                                      {EntryType::node_check_capability_ret, 0},
+                                      {EntryType::endpoint_check_capability_ret, 0},
+                                      {static_cast<EntryType>(200), refusal}}));
+}
+
 TEST(Answers, OfAClientToACallbackAreHeldToTheSame) {
   KeptLog log;
   Node server(log.options());

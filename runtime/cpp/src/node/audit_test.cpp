@@ -83,6 +83,24 @@ TEST(Audit, TellsWhoComesAndGoesAndWhatIsRefused) {
                   "disconnect"));
 }
 
+TEST(Audit, CountsWhatEndsWithALogin) {
+  Witness witness;
+  GuardedService service(GuardedService::with_users(), {.audit = witness.options()});
+  GuardedClient client(service, "alice");
+  client.connect_wire();
+  client.connect_pipe();
+  client.open_generator();
+  client.open_generator();
+  ASSERT_EQ(client.operation("MonitorEnter", "guarded", element<std::int32_t>("timeout", 0)), 0);
+  client.log_out();
+  const auto events = witness.events();
+  const auto ended = std::find_if(events.begin(), events.end(), [](const AuditEvent& event) {
+    return event.kind == AuditKind::ended;
+  });
+  ASSERT_NE(ended, events.end());
+  EXPECT_EQ(ended->reason, "5 wires, pipes, generators, callbacks or locks");
+}
+
 TEST(Audit, SaysFromWhereAndWhy) {
   Witness witness;
   GuardedService service(GuardedService::with_users(), {.audit = witness.options()});

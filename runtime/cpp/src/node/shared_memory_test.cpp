@@ -3,6 +3,9 @@
 // killed, and a memory that is written over at any time.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <time.h>
 
 #include <array>
 #include <atomic>
@@ -15,6 +18,7 @@
 #include "runtime/cpp/src/node/testing/mappings.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
+#include "runtime/cpp/src/node/testing/raw_peer.hpp"
 
 namespace rr::testing {
 namespace {
@@ -76,6 +80,59 @@ TEST_F(SharedMemory, IsNotUsedWhereOneDoesNotWantIt) {
     EXPECT_EQ(counter->get_value(), 2.5);
     EXPECT_TRUE(mappings().empty());
   }
+}
+
+// A server of another implementation is asked for the capability, and for no memory.
+TEST_F(SharedMemory, IsAskedForByTheNameOfTheCapability) {
+  const std::string path = test_folder() + "/plain";
+  const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(listening, 1), 0);
+  std::vector<std::string> asked;
+  std::thread server([&] {
+    RawPeer peer(RawPeer::Accepted{::accept(listening, nullptr, nullptr)});
+    const NodeId node = NodeId::random();
+    for (int i = 0; i < 3; ++i) {
+      const RawPeer::Received request = peer.next();
+      asked.push_back(std::to_string(static_cast<int>(request.type)) + " " + request.member);
+      Writer writer;
+      writer.reset(MessageVersion::v2);
+      const std::size_t end = writer.position();
+      const std::uint32_t level = 0;
+      const bool is_capability = request.type == EntryType::stream_check_capability;
+      if (is_capability) type_of<std::uint32_t>.write(writer, "return", &level);
+      writer.entry({.type = static_cast<EntryType>(static_cast<int>(request.type) + 1),
+                    .member = request.member,
+                    .request_id = request.request_id},
+                   is_capability ? 1 : 0, end);
+      writer.message({.sender_node = node}, 1);
+      peer.send(writer.copy());
+    }
+  });
+  Node client(options());
+  EXPECT_THROW(client.connect<CounterStub>("rr+local://" + path + "?service=counter"), Error);
+  server.join();
+  ::close(listening);
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_EQ(asked[0], "1 CreateConnection");
+  EXPECT_EQ(asked[1], "3 robdef.shared_memory");
+  EXPECT_EQ(asked[2].substr(0, 4), "101 ") << "the service is asked next";
+}
+
+TEST_F(SharedMemory, AThreadThatWaitsForAnAnswerTakesNoProcessor) {
+  const Served server(options());
+  Node client(options());
+  auto counter = client.connect<CounterStub>(url(server.node));
+  const auto used = [] {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  };
+  const auto before = used();
+  counter->slow(500);
+  EXPECT_LT(used() - before, 200ms);
 }
 
 TEST_F(SharedMemory, IsNotUsedWhereTheClientMayNotHoldSoMuch) {

@@ -135,6 +135,44 @@ TEST_F(Staying, LastsWhileTheConnectionIsBusy) {
   keep_busy(link);
 }
 
+// Answers to messages that were received by one call leave by one call.
+TEST_F(Staying, AnswersToWhatCameTogetherLeaveTogether) {
+  Link& link = connect<RawPeer::PairedByPackets>();
+  Writer writer;
+  writer.reset(MessageVersion::v2);
+  writer.entry({.type = EntryType::get_node_info}, 0, writer.position());
+  writer.message({}, 1);
+  const std::vector<std::byte> one = writer.copy();
+  link.peer->send(one);
+  const std::size_t size = link.peer->receive_packet().size();
+  EXPECT_GT(size, 0U);
+  std::vector<std::byte> three;
+  for (int i = 0; i < 3; ++i) three.insert(three.end(), one.begin(), one.end());
+  for (int i = 0; i < 10; ++i) {
+    link.peer->send(three);
+    EXPECT_EQ(link.peer->receive_packet().size(), 3 * size);
+  }
+}
+
+TEST_F(Staying, AnAnswerLeavesWhileTheHandlerOfTheNextMessageTakesLong) {
+  Link& link = connect();
+  keep_busy(link);
+  Gate gate;
+  link.receiver->work = [&gate, handled = 0]() mutable {
+    if (++handled == 2) gate.pass();
+  };
+  Writer writer;
+  writer.reset(MessageVersion::v2);
+  writer.entry({.type = EntryType::get_node_info}, 0, writer.position());
+  writer.message({}, 1);
+  std::vector<std::byte> two = writer.copy();
+  two.insert(two.end(), two.begin(), two.begin() + static_cast<std::ptrdiff_t>(two.size()));
+  link.peer->send(two);
+  EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
+  gate.open();
+  EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
+}
+
 TEST_F(Staying, IsForAsManyAsThereAreThreadsFor) {
   Link& first = connect();
   Link& second = connect();

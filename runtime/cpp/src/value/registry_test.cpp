@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <span>
+
 #include "rr/time_spec.hpp"
 #include "runtime/cpp/src/value/conformance_types.hpp"
 
@@ -55,6 +58,43 @@ TEST(TypeRegistry, FindsInTheOneItContinuesIn) {
   EXPECT_EQ(first.find_definition(rr_definition.name), &rr_definition);
   const TypeRegistry copy = first;
   EXPECT_EQ(copy.find_definition(rr_definition.name), &rr_definition);
+}
+
+std::shared_ptr<Stub> no_stub() { return nullptr; }
+constexpr ObjectType arm_with_stub{.name = "example.arm.Arm",
+                                   .definition = arm,
+                                   .implements = {},
+                                   .members = {},
+                                   .make_stub = no_stub};
+constexpr ObjectType claw{.name = "example.arm.Claw",
+                          .definition = arm,
+                          .implements = {},
+                          .members = {},
+                          .make_stub = nullptr};
+constexpr ObjectType other_arm = arm_with_stub;
+constexpr const ObjectType* objects_with_stub[] = {&arm_with_stub, &claw};
+constexpr const ObjectType* other_objects[] = {&other_arm};
+
+constexpr Definition arm_of(std::span<const ObjectType* const> objects) {
+  return {.name = "example.arm",
+          .text = {},
+          .version = {},
+          .imports = {},
+          .records = {},
+          .exceptions = {},
+          .objects = objects};
+}
+
+TEST(TypeRegistry, TakesStubsFromTheFirstDefinitionThatHasThem) {
+  static constexpr Definition with_stub = arm_of(objects_with_stub);
+  static constexpr Definition other = arm_of(other_objects);
+  TypeRegistry types(arm);
+  types.add(with_stub);
+  EXPECT_EQ(types.find_definition("example.arm"), &arm);
+  EXPECT_EQ(types.find_object("example.arm.Arm"), &arm_with_stub);
+  EXPECT_EQ(types.find_object("example.arm.Claw"), &claw);
+  types.add(other);
+  EXPECT_EQ(types.find_object("example.arm.Arm"), &arm_with_stub);
 }
 
 TEST(TypeRegistry, FindsNothingElse) {

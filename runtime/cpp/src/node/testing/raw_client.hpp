@@ -31,6 +31,7 @@ class RawClient {
     std::string member;
     Elements elements{};
     std::uint32_t id = 7;
+    std::uint16_t error = 0;
   };
   struct Answer {
     EntryType type = EntryType::null;
@@ -90,7 +91,8 @@ class RawClient {
       writer.entry({.type = request.type,
                     .service_path = request.path,
                     .member = request.member,
-                    .request_id = request.id},
+                    .request_id = request.id,
+                    .error = request.error},
                    count, end);
     }
     writer.message({.sender_node = own_,

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -47,11 +48,26 @@ class RawPeer {
     socket_ = ends[0];
     paired.other = ends[1];
   }
+  /// The same of sockets that show what was sent by one call.
+  struct PairedByPackets {
+    int& other;
+  };
+  explicit RawPeer(PairedByPackets paired) {
+    std::array<int, 2> ends{-1, -1};
+    ::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data());
+    socket_ = ends[0];
+    paired.other = ends[1];
+  }
   /// The same by TCP, on the loopback interface.
   struct PairedByTcp {
     int& other;
   };
   explicit RawPeer(PairedByTcp paired) : RawPeer(SilentPeer(), paired.other) {}
+  /// Of a connection that was accepted; the socket becomes this one's.
+  struct Accepted {
+    int socket;
+  };
+  explicit RawPeer(Accepted accepted) : socket_(accepted.socket) {}
   ~RawPeer() { ::close(socket_); }
   RawPeer(const RawPeer&) = delete;
   RawPeer& operator=(const RawPeer&) = delete;
@@ -69,6 +85,13 @@ class RawPeer {
     writer.message({}, 1);
     send(writer.copy());
   }
+  /// What the other side has sent by one call, at most 64 KiB; only with PairedByPackets.
+  std::vector<std::byte> receive_packet() {
+    std::vector<std::byte> bytes(65'536);
+    const ssize_t size = ::recv(socket_, bytes.data(), bytes.size(), 0);
+    bytes.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return bytes;
+  }
   void send(std::span<const std::byte> bytes) {
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t now = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
@@ -82,6 +105,7 @@ class RawPeer {
   struct Received {
     EntryType type = EntryType::null;
     std::uint32_t request_id = 0;
+    std::string member{};
   };
   EntryType next_type() { return next().type; }
   Received next() {
@@ -98,7 +122,7 @@ class RawPeer {
     if (!read_message(bytes, {}, false, *message, nullptr) || !EntryReader(*message).next(entry)) {
       return {};
     }
-    return {entry.type, entry.request_id};
+    return {entry.type, entry.request_id, std::string(entry.member)};
   }
 
   /// Waits for the end of the connection, some seconds at most, and drops what comes before it.

@@ -79,6 +79,11 @@ class RawService {
   [[nodiscard]] std::size_t sent() const { return sent_; }
   /// Answers of clients that have been read.
   [[nodiscard]] std::size_t answered() const { return answered_; }
+  /// Type and error of each of them.
+  [[nodiscard]] std::vector<std::pair<EntryType, std::uint16_t>> answers() {
+    const std::lock_guard lock(client_mutex_);
+    return answers_;
+  }
 
   /// The answer that a request should get, without elements.
   static Answer answer_to(const Request& request) {
@@ -216,6 +221,8 @@ class RawService {
       }
       if (static_cast<int>(request.type) % 2 == 0) {
         ++answered_;
+        const std::lock_guard lock(client_mutex_);
+        answers_.emplace_back(entry.type, entry.error);
         continue;
       }
       if (!handler_ || !handler_(request)) do_as_told(request);
@@ -248,10 +255,12 @@ class RawService {
   const std::string object_type_;
   const std::string definition_;
   const Handler handler_;
-  std::mutex mutex_;         // one message at a time; before the next
-  std::mutex client_mutex_;  // the client, which is read from while a message waits to be sent
+  std::mutex mutex_;  // one message at a time; before the next
+  // The client and its answers, which are read while a message waits to be sent.
+  std::mutex client_mutex_;
   NodeId client_;
   std::uint32_t client_endpoint_ = 0;
+  std::vector<std::pair<EntryType, std::uint16_t>> answers_;
   std::atomic<int> socket_{-1};
   std::atomic<std::size_t> sent_{0};
   std::atomic<std::size_t> answered_{0};
