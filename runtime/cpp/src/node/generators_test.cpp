@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -378,6 +379,37 @@ TEST(Generators, StepsThatComeWhileOneWaitsForACallbackAreTakenInOrder) {
   EXPECT_EQ(steps[0].wait_for(0ms), std::future_status::timeout);
   gate.set_value();
   for (int i = 0; i < 10; ++i) EXPECT_EQ(steps[static_cast<std::size_t>(i)].get(), i + 1);
+}
+
+TEST(Generators, StepsThatHaveWaitedRunBesideNoOtherRequestOfTheirClient) {
+  std::promise<void> gate;
+  BoardPair pair;
+  auto board = pair.connect();
+  auto opened = gate.get_future().share();
+  std::atomic<int> inside{0};
+  std::atomic<int> most_inside{0};
+  const auto work = [&] {
+    most_inside = std::max(most_inside.load(), ++inside);
+    std::this_thread::sleep_for(2ms);
+    --inside;
+  };
+  board->ping().set([&] { opened.wait(); });
+  pair.object->on_step = [&](std::int32_t value) {
+    if (value == 1) pair.object->ping(ServiceContext::current_client());
+    work();
+  };
+  pair.object->on_run = [&](const std::string& what) {
+    if (what == "end the wait") gate.set_value();
+    work();
+    return 0.0;
+  };
+  auto counter = board->count_to(100);
+  std::vector<std::future<std::optional<std::int32_t>>> steps;
+  for (int i = 0; i < 5; ++i) steps.push_back(counter.async_next(use_future));
+  board->run("end the wait");
+  for (int i = 0; i < 20; ++i) board->run("meanwhile");
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(steps[static_cast<std::size_t>(i)].get(), i + 1);
+  EXPECT_EQ(most_inside, 1);
 }
 
 TEST(Generators, ManyStepsBehindOneThatWaitsAreRefusedRatherThanStuck) {

@@ -2,6 +2,8 @@
 // TLS with peers that do what no node of ours does: each is refused by the check that is named.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -12,6 +14,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "rr/authority.hpp"
@@ -22,6 +25,7 @@
 #include "runtime/cpp/src/channel/openssl_tls.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/silent_peer.hpp"
 #include "runtime/cpp/src/replay/stream.hpp"
 
 namespace rr::testing {
@@ -104,6 +108,25 @@ class TlsPeer : public ::testing::Test {
   const NodeId wanted = NodeId::random();
   const NodeId other = NodeId::random();
 };
+
+// A server of several hosts chooses its certificate by the first record.
+TEST(TlsNames, OfAHostAreInTheFirstRecord) {
+  const SilentPeer peer;
+  std::string first;
+  std::thread server([&] {
+    const int socket = peer.accept();
+    std::array<char, 4096> bytes{};
+    const ssize_t size = ::recv(socket, bytes.data(), bytes.size(), 0);
+    if (size > 0) first.assign(bytes.data(), static_cast<std::size_t>(size));
+    ::close(socket);
+  });
+  Node node;
+  EXPECT_THROW(node.connect<CounterStub>("rr+wss://localhost:" + std::to_string(peer.port()) +
+                                         "/?service=counter"),
+               Error);
+  server.join();
+  EXPECT_THAT(first, HasSubstr("localhost"));
+}
 
 TEST_F(TlsPeer, WithTheCertificateOfAnotherNodeThanWasAskedForIsRefused) {
   const auto serve = [&](Stream& stream) {
