@@ -26,7 +26,7 @@ class FarLocks final : public LockKeeper, public std::enable_shared_from_this<Fa
   void set_user(std::uint32_t client, const std::string& user) override {
     sessions_->set_user(client, user);
   }
-  /// Asks the robot; one that does not answer has no locks.
+  /// Asks the robot about a wire; one that does not answer has no locks.
   void check_connect(const ConnectAttempt& request) override;
 
  private:

@@ -101,18 +101,9 @@ std::exception_ptr lock_error(const std::exception_ptr& error) {
   return nullptr;
 }
 
-// What a lock keeps out is refused a peek as well. A pipe has nothing like that: an endpoint is
-// connected and closed.
+// What a lock keeps out is refused a peek as well.
 void check_connect(const dynamic::Object& object, const dynamic::MemberDescription& member,
                    const Executed& done) {
-  if (member.kind == MemberKind::pipe) {
-    object.pipe(member.name)
-        .async_connect([done](const std::exception_ptr& error, dynamic::PipeEndpoint end) {
-          done(lock_error(error), {});
-          if (!error) end.close();
-        });
-    return;
-  }
   const dynamic::Wire wire = object.wire(member.name);
   const auto seen = [done](const std::exception_ptr& error, const Timed<dynamic::Value>&) {
     done(lock_error(error), {});

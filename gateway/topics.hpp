@@ -54,7 +54,7 @@ enum class Verb : std::uint8_t {
   object,   ///< the type of the object at a path
   stream,   ///< records of a stream from a number on
   confirm,  ///< a reader has a stream up to a number
-  connect,  ///< whether a lock keeps a client from connecting a wire or pipe
+  connect,  ///< whether a lock keeps a client from connecting a wire
   lock,     ///< an object is locked or released, or its monitor is entered or left
   session,  ///< begin and end of a client's session at the robot, and that it is in use
 };
