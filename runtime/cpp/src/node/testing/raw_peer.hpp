@@ -42,22 +42,12 @@ class RawPeer {
   struct Paired {
     int& other;
   };
-  explicit RawPeer(Paired paired) {
-    std::array<int, 2> ends{-1, -1};
-    ::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data());
-    socket_ = ends[0];
-    paired.other = ends[1];
-  }
+  explicit RawPeer(Paired paired) : RawPeer(SOCK_STREAM, paired.other) {}
   /// The same of sockets that show what was sent by one call.
   struct PairedByPackets {
     int& other;
   };
-  explicit RawPeer(PairedByPackets paired) {
-    std::array<int, 2> ends{-1, -1};
-    ::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data());
-    socket_ = ends[0];
-    paired.other = ends[1];
-  }
+  explicit RawPeer(PairedByPackets paired) : RawPeer(SOCK_SEQPACKET, paired.other) {}
   /// The same by TCP, on the loopback interface.
   struct PairedByTcp {
     int& other;
@@ -140,6 +130,12 @@ class RawPeer {
   [[nodiscard]] std::uint32_t unacknowledged() const { return info().known.tcpi_unacked; }
 
  private:
+  RawPeer(int type, int& other) {
+    std::array<int, 2> ends{-1, -1};
+    ::socketpair(AF_UNIX, type, 0, ends.data());
+    socket_ = ends[0];
+    other = ends[1];
+  }
   RawPeer(const SilentPeer& listening, int& other) : RawPeer(listening.port()) {
     other = listening.accept();
   }
