@@ -13,6 +13,8 @@ namespace rr::gateway {
 namespace {
 
 constexpr std::size_t most_unanswered = 1'024;
+// So long a robot that has not answered is not asked about wires.
+constexpr std::chrono::seconds silence{10};
 
 using Operation = LockRequest::Operation;
 constexpr std::array<std::pair<Operation, std::string_view>, 6> operations{
@@ -66,14 +68,17 @@ void FarLocks::keep(LockRequest request, Answer answer) {
                                 });
 }
 
-void FarLocks::check_connect(const ConnectAttempt& request) {
+void FarLocks::check_connect(const ConnectAttempt& attempt) {
+  using Clock = FarSessions::Clock;
   // Nothing tells of a pipe's lock but an endpoint, which the robot would see come and go.
-  if (request.member->kind != MemberKind::wire || !*is_robot_there_) return;
+  if (attempt.member->kind != MemberKind::wire || !*is_robot_there_) return;
+  if (Clock::now() < silent_until_.load()) return;
   try {
-    sessions_->wait(request.client, {address_, Verb::connect, path_below_root(request.path),
-                                     std::string(request.member->name)});
+    sessions_->wait(attempt.client, {address_, Verb::connect, path_below_root(attempt.path),
+                                     std::string(attempt.member->name)});
   } catch (const Error& error) {
     if (error.code() == ErrorCode::object_locked_error) throw;
+    if (error.code() == ErrorCode::request_timeout) silent_until_ = Clock::now() + silence;
   }
 }
 

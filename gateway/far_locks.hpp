@@ -26,14 +26,16 @@ class FarLocks final : public LockKeeper, public std::enable_shared_from_this<Fa
   void set_user(std::uint32_t client, const std::string& user) override {
     sessions_->set_user(client, user);
   }
-  /// Asks the robot about a wire; one that does not answer has no locks.
-  void check_connect(const ConnectAttempt& request) override;
+  /// Asks the robot about a wire. One that does not answer has no locks, and is not asked for some
+  /// seconds: each question takes a thread of the node for as long as it waits.
+  void check_connect(const ConnectAttempt& attempt) override;
 
  private:
   const std::shared_ptr<FarSessions> sessions_;
   const ServiceAddress address_;
   const std::shared_ptr<const std::atomic<bool>> is_robot_there_;
   std::atomic<std::size_t> unanswered_{0};
+  std::atomic<FarSessions::Clock::time_point> silent_until_{};
 };
 
 /// `lock` for LockRequest::Operation::lock_for_user: the property `op` of requests.

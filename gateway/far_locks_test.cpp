@@ -105,6 +105,18 @@ TEST_F(FarLocksTest, ARobotThatIsNotThereIsNotAskedForThem) {
   EXPECT_EQ(broker.published(requests), before);
 }
 
+// Nothing says that it is away. What the broker drops is not counted as published.
+TEST(FarLocksOfASilentRobot, AreNotAskedForAgainAtOnce) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carriers(); }, milliseconds(1'000), with_locks);
+  const auto client = rig.connect();
+  broker.set_faults({.dropped = 1});
+  EXPECT_EQ(code_of([&] { return client->wire("force").connect(); }), ErrorCode::none);
+  broker.set_faults({});
+  EXPECT_EQ(code_of([&] { return client->wire("target").connect(); }), ErrorCode::none);
+  EXPECT_EQ(broker.published("rr/hall/robot/bench/$connect/hub/#"), 0U);
+}
+
 TEST_F(FarLocksTest, AreOfSingleObjects) {
   const auto tool = one->object("tools", "left hand");
   lock(tool.stub(), LockOwner::session);

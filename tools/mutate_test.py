@@ -61,7 +61,7 @@ class Places(unittest.TestCase):
         self.assertTrue(mutate.may_depend("list_.clear();", "list_.push_back(7);"))
         self.assertTrue(mutate.may_depend("a = b;", "f(a);"))
         self.assertFalse(mutate.may_depend("names_.clear();", "values_.clear();"))
-        self.assertFalse(mutate.may_depend("memcpy(&last, end, 8);", "memcpy(to, &first, 8);"))
+        self.assertFalse(mutate.may_depend("std::memcpy(&last, end, 8);", "std::memcpy(to, &first, 8);"))
 
     def test_a_mutant_has_one_change(self):
         for mutant in mutate.mutants_of("f.cpp", SOURCE):

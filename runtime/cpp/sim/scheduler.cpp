@@ -62,7 +62,7 @@ void Scheduler::point(const char* what, const void* object, std::int64_t amount,
   const Spared spared;
   clock_reads_ = 0;
   trace_.add({now_, this_thread->number, what, object, amount, caller});
-  if (trace_.count() == most_steps) fail("it goes round in circles");
+  if (trace_.count() >= most_steps) fail("it goes round in circles");
   now_ += step_cost;
   if (now_ >= next_due_) run_due();
   if (stalls_ < turns_.most_stalls && random_.once_in(turns_.stalls_once_in)) {

@@ -261,7 +261,6 @@ TEST(Answers, OfTheWrongTypeToEachKindOfRequestAreDropped) {
   EXPECT_EQ(asked, 7);
 }
 
-// A client that answers a callback with something else, which a service of ours has called.
 TEST(Answers, OfAClientToWhatAnyNodeMayBeAsked) {
   RawService service(std::string(rr_definition.text), "test.counter.Counter");
   Node node;
@@ -281,6 +280,7 @@ TEST(Answers, OfAClientToWhatAnyNodeMayBeAsked) {
                                       {static_cast<EntryType>(200), refusal}}));
 }
 
+// A client that answers a callback with something else, which a service of ours has called.
 TEST(Answers, OfAClientToACallbackAreHeldToTheSame) {
   KeptLog log;
   Node server(log.options());

@@ -49,6 +49,20 @@ class Answering final : public channel::Receiver {
   void closed() override { is_closed = true; }
 };
 
+// So many messages, to be sent by one call.
+std::vector<std::byte> questions(int count) {
+  std::vector<std::byte> bytes;
+  for (int i = 0; i < count; ++i) {
+    Writer writer;
+    writer.reset(MessageVersion::v2);
+    writer.entry({.type = EntryType::get_node_info}, 0, writer.position());
+    writer.message({}, 1);
+    const std::vector<std::byte> one = writer.copy();
+    bytes.insert(bytes.end(), one.begin(), one.end());
+  }
+  return bytes;
+}
+
 class Staying : public ::testing::Test {
  protected:
   struct Link {
@@ -138,18 +152,11 @@ TEST_F(Staying, LastsWhileTheConnectionIsBusy) {
 // Answers to messages that were received by one call leave by one call.
 TEST_F(Staying, AnswersToWhatCameTogetherLeaveTogether) {
   Link& link = connect<RawPeer::PairedByPackets>();
-  Writer writer;
-  writer.reset(MessageVersion::v2);
-  writer.entry({.type = EntryType::get_node_info}, 0, writer.position());
-  writer.message({}, 1);
-  const std::vector<std::byte> one = writer.copy();
-  link.peer->send(one);
+  link.peer->send(questions(1));
   const std::size_t size = link.peer->receive_packet().size();
   EXPECT_GT(size, 0U);
-  std::vector<std::byte> three;
-  for (int i = 0; i < 3; ++i) three.insert(three.end(), one.begin(), one.end());
   for (int i = 0; i < 10; ++i) {
-    link.peer->send(three);
+    link.peer->send(questions(3));
     EXPECT_EQ(link.peer->receive_packet().size(), 3 * size);
   }
 }
@@ -161,13 +168,7 @@ TEST_F(Staying, AnAnswerLeavesWhileTheHandlerOfTheNextMessageTakesLong) {
   link.receiver->work = [&gate, handled = 0]() mutable {
     if (++handled == 2) gate.pass();
   };
-  Writer writer;
-  writer.reset(MessageVersion::v2);
-  writer.entry({.type = EntryType::get_node_info}, 0, writer.position());
-  writer.message({}, 1);
-  std::vector<std::byte> two = writer.copy();
-  two.insert(two.end(), two.begin(), two.begin() + static_cast<std::ptrdiff_t>(two.size()));
-  link.peer->send(two);
+  link.peer->send(questions(2));
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
   gate.open();
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);

@@ -78,7 +78,7 @@ class RawService {
   /// Bytes that have been sent.
   [[nodiscard]] std::size_t sent() const { return sent_; }
   /// Answers of clients that have been read.
-  [[nodiscard]] std::size_t answered() const { return answered_; }
+  [[nodiscard]] std::size_t answered() { return answers().size(); }
   /// Type and error of each of them.
   [[nodiscard]] std::vector<std::pair<EntryType, std::uint16_t>> answers() {
     const std::lock_guard lock(client_mutex_);
@@ -220,7 +220,6 @@ class RawService {
         request.service_type = element.text();
       }
       if (static_cast<int>(request.type) % 2 == 0) {
-        ++answered_;
         const std::lock_guard lock(client_mutex_);
         answers_.emplace_back(entry.type, entry.error);
         continue;
@@ -263,7 +262,6 @@ class RawService {
   std::vector<std::pair<EntryType, std::uint16_t>> answers_;
   std::atomic<int> socket_{-1};
   std::atomic<std::size_t> sent_{0};
-  std::atomic<std::size_t> answered_{0};
   std::atomic<bool> is_over_{false};
   SilentPeer peer_;
   std::thread thread_;
