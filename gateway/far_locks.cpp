@@ -13,7 +13,7 @@ namespace rr::gateway {
 namespace {
 
 constexpr std::size_t most_unanswered = 1'024;
-// So long a robot that has not answered is not asked about wires.
+// So long a robot that has not answered is not asked about pipes and wires.
 constexpr std::chrono::seconds silence{10};
 
 using Operation = LockRequest::Operation;
@@ -70,8 +70,7 @@ void FarLocks::keep(LockRequest request, Answer answer) {
 
 void FarLocks::check_connect(const ConnectAttempt& attempt) {
   using Clock = FarSessions::Clock;
-  // Nothing tells of a pipe's lock but an endpoint, which the robot would see come and go.
-  if (attempt.member->kind != MemberKind::wire || !*is_robot_there_) return;
+  if (!*is_robot_there_) return;
   if (Clock::now() < silent_until_.load()) return;
   try {
     sessions_->wait(attempt.client, {address_, Verb::connect, path_below_root(attempt.path),

@@ -26,8 +26,8 @@ class FarLocks final : public LockKeeper, public std::enable_shared_from_this<Fa
   void set_user(std::uint32_t client, const std::string& user) override {
     sessions_->set_user(client, user);
   }
-  /// Asks the robot about a wire. One that does not answer has no locks, and is not asked for some
-  /// seconds: each question takes a thread of the node for as long as it waits.
+  /// Asks the robot about a pipe or wire. One that does not answer has no locks, and is not asked
+  /// for some seconds: each question takes a thread of the node for as long as it waits.
   void check_connect(const ConnectAttempt& attempt) override;
 
  private:

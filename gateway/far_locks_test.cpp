@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 #include <string>
 
@@ -78,19 +79,37 @@ TEST_F(FarLocksTest, OfAUserKeepOutOtherUsers) {
   EXPECT_EQ(use(near), ErrorCode::none);
 }
 
-TEST_F(FarLocksTest, KeepOthersFromConnectingWires) {
-  const auto connect = [](const dynamic::Client& client, const char* wire) {
-    return code_of([&] { return client->wire(wire).connect(); });
+TEST_F(FarLocksTest, KeepOthersFromConnectingPipesAndWires) {
+  const auto connect = [](const dynamic::Client& client, const std::string& member) {
+    return code_of([&] {
+      if (client->member(member).kind == MemberKind::pipe) {
+        (void)client->pipe(member).connect();
+      } else {
+        (void)client->wire(member).connect();
+      }
+      return 0;
+    });
   };
-  for (const char* wire : {"force", "target"}) {
-    EXPECT_EQ(connect(two, wire), ErrorCode::none) << wire;
+  for (const char* member : {"force", "target", "samples", "commands"}) {
+    EXPECT_EQ(connect(two, member), ErrorCode::none) << member;
     lock(one->stub(), LockOwner::session);
     auto late = rig.connect();
-    EXPECT_EQ(connect(late, wire), ErrorCode::object_locked_error) << wire;
-    EXPECT_EQ(connect(one, wire), ErrorCode::none) << wire;
+    EXPECT_EQ(connect(late, member), ErrorCode::object_locked_error) << member;
+    EXPECT_EQ(connect(one, member), ErrorCode::none) << member;
     unlock(one->stub());
-    EXPECT_EQ(connect(late, wire), ErrorCode::none) << wire;
+    EXPECT_EQ(connect(late, member), ErrorCode::none) << member;
   }
+}
+
+// It has no endpoint for a pipe that sends nothing to it, and sees none come and go.
+TEST_F(FarLocksTest, TheRobotSeesNoEndpointOfOneThatIsAskedAbout) {
+  const std::size_t before = rig.robot.bench().pipe("commands").endpoint_count();
+  std::atomic<int> connected{0};
+  rig.robot.bench().pipe("commands").on_connect([&](const dynamic::PipeEndpoint&) { ++connected; });
+  const auto commands = one->pipe("commands").connect();
+  EXPECT_GE(broker.published("rr/hall/robot/bench/$connect/hub/commands"), 1U);
+  EXPECT_EQ(rig.robot.bench().pipe("commands").endpoint_count(), before);
+  EXPECT_EQ(connected, 0);
 }
 
 TEST_F(FarLocksTest, ARobotThatIsNotThereIsNotAskedForThem) {

@@ -104,6 +104,12 @@ std::exception_ptr lock_error(const std::exception_ptr& error) {
 // What a lock keeps out is refused a peek as well.
 void check_connect(const dynamic::Object& object, const dynamic::MemberDescription& member,
                    const Executed& done) {
+  if (member.kind == MemberKind::pipe) {
+    object.pipe(member.name).async_check_lock([done](const std::exception_ptr& error) {
+      done(lock_error(error), {});
+    });
+    return;
+  }
   const dynamic::Wire wire = object.wire(member.name);
   const auto seen = [done](const std::exception_ptr& error, const Timed<dynamic::Value>&) {
     done(lock_error(error), {});

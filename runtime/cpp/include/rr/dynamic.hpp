@@ -141,6 +141,10 @@ class Pipe {
   PipeEndpoint connect(const PipeOptions& options = {}) const;
   /// As connect(), without waiting.
   void async_connect(Done<PipeEndpoint> done, const PipeOptions& options = {}) const;
+  /// Finds out whether a lock of the object keeps this client out, without an endpoint that the
+  /// service would see come and go. Fails with object_locked_error then; any other error, or none,
+  /// means that no lock does.
+  void async_check_lock(Done<> done) const;
 
   /// For the runtime: Object::pipe() makes it.
   Pipe(std::shared_ptr<DynamicStub> stub, const MemberTable& member);  // internal

@@ -171,6 +171,10 @@ class PipeMember {
   PipeEnd connect_end(const PipeOptions& options);
   /// The completion's result is a PipeEnd.
   void start_connect(const PipeOptions& options, std::unique_ptr<Completion> completion);
+  /// Finds out whether a lock of the object keeps this client out, without an endpoint that the
+  /// service would see come and go: the completion fails with object_locked_error then, and with
+  /// any other error, or not at all, when none does. It has no result.
+  void start_lock_check(std::unique_ptr<Completion> completion);
 
   /// the object
   Stub* stub_;

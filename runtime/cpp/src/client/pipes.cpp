@@ -122,6 +122,16 @@ void Pipes::start_connect(Wish wish, std::chrono::milliseconds timeout,
       timeout, std::make_shared<Opened>(connecting, std::move(completion)));
 }
 
+// Asks to close an endpoint that there is not: a lock is looked at first (07, section 6).
+void Pipes::start_lock_check(const std::string& path, const Member& member,
+                             std::chrono::milliseconds timeout,
+                             std::unique_ptr<Completion> completion) {
+  const std::int32_t index = PipeOptions().index;  // of no endpoint
+  const void* const values[] = {&index};
+  session_.start({EntryType::pipe_disconnect_req, path, member.name, {&index_parameter, 1}, values},
+                 Incoming{}, timeout, std::move(completion));
+}
+
 void Pipes::begin(const Wish& wish) {
   const MutexLock lock(mutex_);
   Early& early = early_[Key(wish.path, wish.member->name)];
@@ -337,6 +347,13 @@ void PipeMember::start_connect(const PipeOptions& options, std::unique_ptr<Compl
   if (session.refuse_start(*stub_, *member_, completion)) return;
   session.pipes().start_connect({stub_->rr_path(), member_, holding_, options}, stub_->rr_timeout(),
                                 std::move(completion));
+}
+
+void PipeMember::start_lock_check(std::unique_ptr<Completion> completion) {
+  Session& session = need(*stub_);
+  if (session.refuse_start(*stub_, *member_, completion)) return;
+  session.pipes().start_lock_check(stub_->rr_path(), *member_, stub_->rr_timeout(),
+                                   std::move(completion));
 }
 
 }  // namespace rr

@@ -41,6 +41,9 @@ class Pipes final : public endpoint::PipeSide {
   PipeEnd connect(Wish wish, std::chrono::milliseconds timeout);
   void start_connect(Wish wish, std::chrono::milliseconds timeout,
                      std::unique_ptr<Completion> completion);
+  /// What PipeMember::start_lock_check() stands on.
+  void start_lock_check(const std::string& path, const Member& member,
+                        std::chrono::milliseconds timeout, std::unique_ptr<Completion> completion);
 
   // What the service sends.
   void take_packets(const Message& message, const Entry& entry, const MemoryRef& owner);

@@ -9,7 +9,9 @@
 
 #include "rr/error.hpp"
 #include "rr/lock_keeper.hpp"
+#include "rr/locks.hpp"
 #include "rr/node.hpp"
+#include "rr/users.hpp"
 #include "runtime/cpp/src/dynamic/rig.hpp"
 #include "runtime/cpp/src/dynamic/testing.hpp"
 
@@ -322,6 +324,45 @@ TEST(DynamicLocks, AKeeperIsAskedBeforeAPipeOrWireIsConnected) {
   EXPECT_EQ(lab.pipe("samples").endpoint_count(), 1U);
   EXPECT_EQ(lab.wire("level").connection_count(), 1U);
   EXPECT_THAT(keeper->asked(), ElementsAre("lab.samples", "lab.level"));
+}
+
+// What a lock says of a client that would connect a pipe.
+std::string lock_check(const Pipe& pipe) {
+  std::promise<void> done;
+  pipe.async_check_lock([&](const std::exception_ptr& error) {
+    error ? done.set_exception(error) : done.set_value();
+  });
+  return error_text([&] { done.get_future().get(); });
+}
+
+TEST(DynamicLocks, OfAPipeAreFoundWithoutAnEndpoint) {
+  ServedObject lab(Definitions({lab_definition}), "test.lab.Lab");
+  std::atomic<int> connected{0};
+  for (const char* pipe : {"samples", "notes"}) {
+    lab.pipe(pipe).on_connect([&](const PipeEndpoint&) { ++connected; });
+  }
+  Node server;
+  Node node;
+  const Service service =
+      register_service(server, "lab", lab,
+                       {.users = std::make_shared<PasswordUsers>(
+                            "operator 5f4dcc3b5aa765d61d8327deb882cf99 objectlock\n")});
+  const std::string url =
+      "rr+tcp://localhost:" + std::to_string(server.listen_tcp(0)) + "/?service=lab";
+  const ConnectOptions login{.username = "operator", .credentials = {{"password", "password"}}};
+  const Client holder = connect(node, url, login);
+  const Client other = connect(node, url, login);
+
+  EXPECT_EQ(lock_check(other->pipe("samples")).substr(0, 4), "18: ") << "no endpoint, no lock";
+  lock(holder->stub(), LockOwner::session);
+  EXPECT_EQ(lock_check(other->pipe("samples")).substr(0, 5), "151: ");
+  EXPECT_EQ(lock_check(other->pipe("notes")).substr(0, 4), "18: ") << "of no lock";
+  EXPECT_EQ(lock_check(holder->pipe("samples")).substr(0, 4), "18: ");
+  const PipeEndpoint samples = holder->pipe("samples").connect();
+  EXPECT_EQ(lock_check(holder->pipe("samples")).substr(0, 4), "18: ");
+  EXPECT_TRUE(samples.is_open());
+  EXPECT_EQ(connected, 1);
+  EXPECT_EQ(lab.pipe("samples").endpoint_count(), 1U);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class PipeRequests final : public rr::Pipe<Value> {
  public:
   using rr::Pipe<Value>::Pipe;
   using PipeMember::start_connect;
+  using PipeMember::start_lock_check;
 };
 
 WireRequests requests(const std::shared_ptr<DynamicStub>& stub, const MemberTable& member) {
@@ -139,6 +140,10 @@ void Pipe::async_connect(Done<PipeEndpoint> done, const PipeOptions& options) co
               [member = stub_->describe(*member_)](PipeEnd& end, const Done<PipeEndpoint>& finish) {
                 finish(nullptr, PipeEndpoint(rr::PipeEndpoint<Value>(std::move(end)), member));
               }));
+}
+
+void Pipe::async_check_lock(Done<> done) const {
+  PipeRequests(*stub_, stub_->wire(*member_)).start_lock_check(complete_with(std::move(done)));
 }
 
 PipeEndpoint::PipeEndpoint(rr::PipeEndpoint<Value> end, MemberDescription member)

@@ -3,13 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "rr/lock_keeper.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/raw_client.hpp"
 #include "runtime/cpp/src/node/testing/wired.hpp"
@@ -97,6 +100,26 @@ TEST_F(WireProtocol, SlotsAreNotGivenWhereNoMemoryIsShared) {
 }
 
 // A program may rely on nanoseconds that are less than a second (rr/time_spec.hpp).
+// Keeps no lock, and counts what it is asked.
+class Counting final : public LockKeeper {
+ public:
+  void keep(LockRequest /*request*/, Answer answer) override { answer(nullptr, false); }
+  void check_connect(const ConnectAttempt& /*attempt*/) override { ++asked; }
+
+  std::atomic<int> asked{0};
+};
+
+TEST_F(WireProtocol, ALockKeeperIsAskedOnceForAConnectionThatIsAskedForTwice) {
+  const auto keeper = std::make_shared<Counting>();
+  const Service kept =
+      pair_.server.register_service("kept", std::make_shared<Wired>(), {.lock_keeper = keeper});
+  RawClient client(pair_.server, "kept");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(client.ask(EntryType::wire_connect_req, "kept", "level").error, 0);
+    EXPECT_EQ(keeper->asked, 1);
+  }
+}
+
 TEST_F(WireProtocol, TimesOfOthersHaveSoundNanoseconds) {
   constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t last = std::numeric_limits<std::int64_t>::max();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <mutex>
 #include <string>
@@ -131,6 +133,20 @@ TEST(Logins, SayWhoCameInAndWhy) {
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_EQ(all[0], "`b\\x1b[2Job\\x60` from 10.0.0.2 is not logged in: wrong");
   EXPECT_THAT(all[1], HasSubstr("10.0.0.3"));
+}
+
+TEST(Logins, AThreadThatHasNothingToDoTakesNoProcessor) {
+  Lines lines;
+  Logins logins({}, lines.log());
+  EXPECT_EQ(start(logins, "10.0.0.1", [] { return User{.name = "alice"}; }).refusal(), "");
+  const auto used = [] {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  };
+  const auto before = used();
+  std::this_thread::sleep_for(300ms);
+  EXPECT_LT(used() - before, 100ms);
 }
 
 TEST(Logins, NamesInTheLogAreShort) {
