@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-constexpr auto idle_time = 1s;
+constexpr auto idle_time = 300ms;
 constexpr auto time_to_give_back = 5s;
 
 // Long enough for what an attack takes to be taken; figures want more.
