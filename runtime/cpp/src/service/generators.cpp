@@ -75,7 +75,7 @@ std::shared_ptr<ClientGenerator> Generators::forget(std::int32_t index) {
 std::vector<std::shared_ptr<ClientGenerator>> Generators::forget_if(
     const std::function<bool(const ClientGenerator&)>& is_over) {
   std::vector<std::shared_ptr<ClientGenerator>> removed;
-  std::erase_if(generators_, [&](auto& item) {
+  std::erase_if(generators_, [&](auto& item) RR_REQUIRES(mutex_) {
     if (!is_over(*item.second)) return false;
     std::erase(closed_, item.first);
     item.second->state = ClientGenerator::State::ended;

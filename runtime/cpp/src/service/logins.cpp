@@ -26,8 +26,6 @@ using channel::Time;
 constexpr unsigned free_failures = 4;
 // Addresses whose failures are remembered.
 constexpr std::size_t most_addresses = 4096;
-// A thread without work ends after this time.
-constexpr std::chrono::seconds idle_time{10};
 // So many failures a second are logged one by one.
 constexpr unsigned logged_at_once = 10;
 constexpr std::chrono::seconds log_period{1};
@@ -72,8 +70,11 @@ std::string printable_name(std::string_view name) {
 }
 
 struct Logins::State : std::enable_shared_from_this<State> {
-  State(const LoginOptions& given, Log log_function)
-      : options(given), threads_limit(threads_of(given)), log(std::move(log_function)) {}
+  State(const LoginOptions& given, Log log_function, channel::Milliseconds idle_limit)
+      : options(given),
+        threads_limit(threads_of(given)),
+        log(std::move(log_function)),
+        idle_time(idle_limit) {}
 
   using Attempts = std::deque<std::shared_ptr<Attempt>>;
   struct Remote {
@@ -86,6 +87,7 @@ struct Logins::State : std::enable_shared_from_this<State> {
   const LoginOptions options;
   const unsigned threads_limit;
   const Log log;
+  const channel::Milliseconds idle_time;
 
   Mutex mutex;
   Condition wake;
@@ -136,8 +138,8 @@ Milliseconds Logins::delay(const LoginOptions& options, unsigned of_connection,
   return delay;
 }
 
-Logins::Logins(const LoginOptions& options, Log log)
-    : state_(std::make_shared<State>(options, std::move(log))) {}
+Logins::Logins(const LoginOptions& options, Log log, channel::Milliseconds idle_time)
+    : state_(std::make_shared<State>(options, std::move(log), idle_time)) {}
 
 Logins::~Logins() { stop(); }
 

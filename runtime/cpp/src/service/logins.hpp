@@ -41,7 +41,9 @@ class Logins {
   };
   using Log = std::function<void(LogLevel, std::string_view)>;
 
-  Logins(const LoginOptions& options, Log log);
+  /// `idle_time`: a thread without work ends after it.
+  Logins(const LoginOptions& options, Log log,
+         channel::Milliseconds idle_time = std::chrono::seconds(10));
   /// As stop().
   ~Logins();
   Logins(const Logins&) = delete;
