@@ -283,7 +283,10 @@ TEST_F(Finding, TheEndOfTheNodeEndsWaits) {
   std::this_thread::sleep_for(20ms);
   const Discovery discovery = node->discovery();
   node.reset();
-  EXPECT_EQ(error_of([&] { (void)waiting.get(); }).code(), ErrorCode::operation_cancelled);
+  const ErrorCode code = error_of([&] { (void)waiting.get(); }).code();
+  // On a busy machine the wait has not begun.
+  EXPECT_TRUE(code == ErrorCode::operation_cancelled || code == ErrorCode::invalid_operation)
+      << static_cast<int>(code);
   EXPECT_EQ(error_of([&] { discovery.listen(); }).code(), ErrorCode::invalid_operation);
   EXPECT_TRUE(discovery.detected_nodes().empty());
 }

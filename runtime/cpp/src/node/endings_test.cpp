@@ -158,8 +158,8 @@ TEST(Shutdown, WorkAsideMayDestroyItsNode) {
 }
 
 TEST(Shutdown, WorkAsideIsWaitedForAndRefusedAfterwards) {
+  Gate gate;  // threads of the node may still be in there when it ends
   Pair pair;
-  Gate gate;
   std::atomic<bool> is_done{false};
   std::thread::id thread;
   pair.client.run_aside([&] {
@@ -180,8 +180,8 @@ TEST(Shutdown, WorkAsideIsWaitedForAndRefusedAfterwards) {
 }
 
 TEST(Shutdown, WhatWorkAsideOwnsMayUseTheNodeWhenItGoes) {
+  Gate gate;  // threads of the node may still be in there when it ends
   Pair pair;
-  Gate gate;
   pair.client.run_aside([owner = at_end([&] {
                            gate.pass();
                            EXPECT_THAT(pair.client.urls("counter"), ::testing::IsEmpty());
@@ -400,8 +400,8 @@ TEST(Ownership, AServiceIsOfferedWhenItsObjectIsAttached) {
    private:
     Gate& gate_;
   };
+  Gate gate;  // threads of the node may still be in there when it ends
   Pair pair;
-  Gate gate;
   auto registration = std::async(std::launch::async, [&] {
     pair.server.register_service("slow", std::make_shared<Slow>(gate));
   });
