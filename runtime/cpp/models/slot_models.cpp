@@ -98,6 +98,62 @@ struct SlotModel : rl::test_suite<SlotModel<Sync, readers, values, looks>, 1 + r
   }
 };
 
+/// One publisher, and a reader that reads in place: while it uses a slot the value stays there.
+template <class Sync>
+struct UsedSlotModel : rl::test_suite<UsedSlotModel<Sync>, 2> {
+  using Steps = channel::SlotSteps<Sync>;
+  using State = typename Steps::State;
+  using Word = typename Sync::template Atomic<std::uint64_t>;
+  static constexpr std::uint64_t count = 3;
+
+  NoSleepers<Sync> none;
+  typename Steps::Words words;
+  std::array<typename Steps::Head, count> heads;
+  std::array<std::array<Word, 2>, count> bytes;
+  channel::HoldWords<Sync> holds;
+
+  void thread(unsigned index) {
+    if (index == 0) {
+      std::uint64_t newest = 0;
+      for (int value = 0; value < 4; ++value) publish(newest);
+      return;
+    }
+    for (int i = 0; i < 2; ++i) look();
+  }
+
+ private:
+  void publish(std::uint64_t& newest) {
+    for (std::uint64_t number = newest + 1; number < newest + count; ++number) {
+      const std::size_t slot = number % count;
+      const auto is_used = [&] { return holds.are_used(slot); };
+      if (is_used() || !Steps::try_to_begin(heads[slot], number, is_used)) continue;
+      for (Word& word : bytes[slot]) word.store(number, std::memory_order_relaxed);
+      Steps::commit(words, heads[slot], number);
+      newest = number;
+      return;
+    }
+    expect(false, "a reader that uses one slot leaves one");
+  }
+
+  void look() {
+    const std::uint64_t number = words.newest.load(std::memory_order_acquire);
+    if (number == 0) return;
+    const std::size_t slot = number % count;
+    const State before = Steps::look(heads[slot], number, count);
+    expect(before != State::wrong, "a publisher that keeps to the rules is not refused");
+    if (before != State::whole) return;
+    holds.use(slot, number);
+    if (Steps::look_at_used(heads[slot], number, count) == State::whole) {
+      for (int i = 0; i < 2; ++i) {
+        for (const Word& word : bytes[slot]) {
+          expect(word.load(std::memory_order_relaxed) == number, "a value that is used stays");
+        }
+      }
+    }
+    holds.leave(slot);
+  }
+};
+
 /// A reader that sleeps on the bell, the thread of the service that counts it, and one that
 /// publishes, as SlotWriter does.
 template <class Sync>
@@ -137,6 +193,10 @@ Outcome run_two(const Extent& extent) {
   return run_model<SlotModel<ModelSync<fault>, 2, 3, 2>>(extent);
 }
 template <Fault fault>
+Outcome run_used(const Extent& extent) {
+  return run_model<UsedSlotModel<ModelSync<fault>>>(extent);
+}
+template <Fault fault>
 Outcome run_sleeper(const Extent& extent) {
   return run_model<SleeperModel<ModelSync<fault>>>(extent);
 }
@@ -147,6 +207,8 @@ constexpr std::array models = {
     Model{"slots", "newest before it is whole", false, &run_one<Fault::wrong_order>},
     Model{"slots of two readers", "", false, &run_two<Fault::none>},
     Model{"slots of two readers", "relaxed orders", false, &run_two<Fault::relaxed>},
+    Model{"slots that are used", "", false, &run_used<Fault::none>},
+    Model{"slots that are used", "relaxed orders", false, &run_used<Fault::relaxed>},
     Model{"slots, sleeping reader", "", false, &run_sleeper<Fault::none>},
     Model{"slots, sleeping reader", "blind sleep", false, &run_sleeper<Fault::blind_sleep>},
     Model{"slots, sleeping reader", "no wake-up", false, &run_sleeper<Fault::no_wake>},

@@ -24,22 +24,25 @@ class Memory {
   void release() noexcept {
     if (references_.fetch_sub(1, std::memory_order_acq_rel) == 1) destroy();
   }
-  /// Whether there is one reference only.
+  /// Whether there is one reference only, whose holder may change the memory.
   [[nodiscard]] bool is_unique() const noexcept {
-    return references_.load(std::memory_order_acquire) == 1;
+    return !is_read_only_ && references_.load(std::memory_order_acquire) == 1;
   }
   /// The bytes, if the holder of the only reference may write over them; empty if not.
   [[nodiscard]] virtual std::span<std::byte> storage() noexcept { return {}; }
 
  protected:
+  /// Whether what is kept may be changed.
+  enum class Use : std::uint8_t { read_write, read_only };
   /// Made with one reference, which a MemoryRef takes over.
-  Memory() = default;
+  explicit Memory(Use use = Use::read_write) noexcept : is_read_only_(use == Use::read_only) {}
   ~Memory() = default;
   /// Frees this. Called once, on the thread that releases the last reference.
   virtual void destroy() noexcept = 0;  // frees this
 
  private:
   std::atomic<std::uint32_t> references_{1};
+  const bool is_read_only_;
 };
 
 /// A counted reference to Memory; may be empty.
@@ -66,7 +69,7 @@ class MemoryRef {
 
   /// Whether it refers to something.
   explicit operator bool() const noexcept { return memory_ != nullptr; }
-  /// Whether this is the only reference. False when it is empty.
+  /// Whether this is the only reference, to memory that may be changed. False when it is empty.
   [[nodiscard]] bool is_unique() const noexcept {
     return memory_ != nullptr && memory_->is_unique();
   }

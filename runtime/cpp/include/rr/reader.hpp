@@ -100,6 +100,12 @@ class ContainerBudget {
   ~ContainerBudget() = default;
 };
 
+/// Items of an array that are elsewhere than the rest of their message.
+struct DisplacedItems {
+  std::span<const std::byte> gap{};  ///< in the message, in their place; never looked at
+  const std::byte* items = nullptr;  ///< the first byte of as many
+};
+
 /// What reading the values of one message has in common, and the first thing that went wrong.
 /// Nothing here throws; after a failure everything that is read is empty.
 class Decoder : public Latch {
@@ -134,6 +140,24 @@ class Decoder : public Latch {
   }
   /// Must outlive the decoder. Before anything is read.
   void set_budget(ContainerBudget& budget);
+  /// For the runtime: items that are elsewhere, where `owner` keeps them. `displaced` must outlive
+  /// the decoder. Before anything is read.
+  void set_displaced(std::span<const DisplacedItems> displaced, MemoryRef owner) {
+    displaced_ = displaced;
+    displaced_owner_ = std::move(owner);
+  }
+  /// For the runtime: where the payload of an array is, and what keeps it: null for nothing.
+  struct Located {
+    std::span<const std::byte> items;
+    const MemoryRef* owner;
+    bool is_displaced;  ///< another process may change it at any time
+  };
+  /// For the runtime: as it says.
+  [[nodiscard]] Located locate(std::span<const std::byte> payload) const {
+    if (!displaced_.empty()) [[unlikely]]
+      return locate_displaced(payload);
+    return {payload, owner_ ? &owner_ : nullptr, false};
+  }
   /// How many bytes of arrays were copied, not sliced, so far.
   [[nodiscard]] std::size_t copied_array_bytes() const { return copied_array_bytes_; }
   /// For the runtime: adds to copied_array_bytes().
@@ -141,6 +165,7 @@ class Decoder : public Latch {
 
  private:
   bool reserve_more(std::size_t bytes, std::string_view element);
+  [[nodiscard]] Located locate_displaced(std::span<const std::byte> payload) const;
 
   MessageVersion version_;
   const StringTable* strings_;
@@ -149,6 +174,8 @@ class Decoder : public Latch {
   std::size_t reserved_ = container_limit;  // and not used yet
   ContainerBudget* budget_ = nullptr;
   std::size_t copied_array_bytes_ = 0;
+  std::span<const DisplacedItems> displaced_;
+  MemoryRef displaced_owner_;
 };
 
 /// Walks sibling elements. Each call of next() checks that the element's parts lie inside it and it

@@ -122,6 +122,7 @@ struct MessageHeader {
 struct Piece {
   const std::byte* data = nullptr;  ///< the first byte
   std::size_t size = 0;             ///< bytes
+  bool is_attached = false;         ///< one large payload, and nothing else
 };
 
 /// Builds one message, last byte first. Sizes stand in front of what they measure, and in format 4

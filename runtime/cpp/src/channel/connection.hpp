@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,7 @@ enum class Priority : std::uint8_t {
   fixed,   ///< nothing, and nothing overtakes it or what waits before it
 };
 
+class ServedHolds;
 class SlotReader;
 class SlotWriter;
 
@@ -110,7 +112,13 @@ class Connection {
   /// afterwards. False when that is not possible; then it is to be told otherwise.
   [[nodiscard]] virtual bool pass_slots(const SlotWriter& /*slots*/) { return false; }
   /// By the client's side, from Receiver::take_answer(): takes one that was passed; null for none.
-  virtual std::shared_ptr<SlotReader> take_slots(std::uint64_t /*id*/) { return nullptr; }
+  /// `holds`: the place of the words that the service's side has drawn for its reader.
+  virtual std::shared_ptr<SlotReader> take_slots(std::uint64_t /*id*/,
+                                                 std::optional<std::uint32_t> /*holds*/) {
+    return nullptr;
+  }
+  /// By the service's side: words by which one reader says which slots it uses; null for none.
+  virtual std::shared_ptr<ServedHolds> draw_holds() { return nullptr; }
 
   /// The threads that what the other side asks may take; null where nobody counts them, as for a
   /// client's connection.

@@ -147,8 +147,29 @@ bool SharedCarrier::pass_slots(const SlotWriter& slots) {
   return platform::send_with_handle(socket_, bell, slots.handle()) == std::ptrdiff_t{bell.size()};
 }
 
-std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id) {
+std::shared_ptr<ServedHolds> SharedCarrier::draw_holds() {
+  return is_server_ && has_slots_ ? pool_.draw() : nullptr;
+}
+
+std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id,
+                                                      std::optional<std::uint32_t> holds) {
   if (is_server_ || !has_slots_) return nullptr;
+  std::unique_ptr<SlotReader> slots = find_slots(id);
+  if (slots && holds && *holds < HoldPlaces::count) slots->use_holds(open_holds(*holds));
+  return slots;
+}
+
+// Arrays of the reader that had the words before may still be there.
+std::shared_ptr<SlotHolds> SharedCarrier::open_holds(std::uint32_t place) {
+  if (const auto before = holds_[place].lock()) before->detach();
+  const auto first = rings_.holds();
+  auto opened =
+      std::make_shared<SlotHolds>(std::shared_ptr<SlotHolds::Words>(first, first.get() + place));
+  holds_[place] = opened;
+  return opened;
+}
+
+std::unique_ptr<SlotReader> SharedCarrier::find_slots(std::uint64_t id) {
   for (int left = most_looks; left != 0; --left) {
     if (auto slots = passed_.take(id)) return slots;
     must_look_ = Look::none;

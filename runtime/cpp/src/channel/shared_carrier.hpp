@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -65,8 +67,11 @@ class SharedCarrier final : public Carrier {
   /// the client has not received.
   [[nodiscard]] bool pass_slots(const SlotWriter& slots);
   /// By the client, with the read lease: takes one that the server has passed; null for none, and
-  /// for a server.
-  std::unique_ptr<SlotReader> take_slots(std::uint64_t id);
+  /// for a server. `holds`: the place of the words by which its reader says what it uses.
+  std::unique_ptr<SlotReader> take_slots(std::uint64_t id,
+                                         std::optional<std::uint32_t> holds = std::nullopt);
+  /// By the server, any thread: words for one reader of slots; null when there are none left.
+  std::shared_ptr<ServedHolds> draw_holds();
 
   /// Any thread: the same for the other side, which may sleep where it does not see the socket's
   /// end.
@@ -80,8 +85,11 @@ class SharedCarrier final : public Carrier {
   void wait_for(Clock::duration time);
   bool spin();
   void ring() const;
+  std::unique_ptr<SlotReader> find_slots(std::uint64_t id);
+  std::shared_ptr<SlotHolds> open_holds(std::uint32_t place);
 
   const SharedRings rings_;
+  HoldPool pool_{rings_.holds()};  // of a server
   RingReader reader_;
   RingWriter writer_;
   const int socket_;
@@ -97,6 +105,7 @@ class SharedCarrier final : public Carrier {
   // With the read lease.
   bool has_ended_ = false;
   PassedSlots passed_;
+  std::array<std::weak_ptr<SlotHolds>, HoldPlaces::count> holds_;  // of a client
   bool has_taken_bells_ = false;
   bool is_watching_;
   unsigned vain_spins_ = 0;  // in a row, at most 8

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "runtime/cpp/src/channel/shared_header.hpp"
@@ -17,7 +18,10 @@ constexpr std::size_t to_server_at = 0x100;
 constexpr std::size_t to_client_at = 0x200;
 constexpr std::size_t data_at = SharedHeader::first_data;
 static_assert(to_server_at + sizeof(Words) == to_client_at &&
-              to_client_at + sizeof(Words) <= data_at);
+              to_client_at + sizeof(Words) <= HoldPlaces::first &&
+              HoldPlaces::first + HoldPlaces::count * sizeof(SlotHolds::Words) <= data_at);
+// As the page has them.
+static_assert(sizeof(SlotHolds::Words) == 64 && std::is_standard_layout_v<SlotHolds::Words>);
 
 SharedRing ring_at(const platform::SharedMemory& memory, std::size_t words_at, std::size_t place,
                    std::size_t size) {
@@ -36,9 +40,14 @@ bool is_ring_size(std::size_t size) {
 std::size_t SharedRings::memory_size(std::size_t ring_size) { return data_at + 2 * ring_size; }
 
 SharedRings::SharedRings(platform::SharedMemory memory, std::size_t ring_size)
-    : memory_(std::move(memory)),
-      to_server_(ring_at(memory_, to_server_at, 0, ring_size)),
-      to_client_(ring_at(memory_, to_client_at, 1, ring_size)) {}
+    : memory_(std::make_shared<const platform::SharedMemory>(std::move(memory))),
+      to_server_(ring_at(*memory_, to_server_at, 0, ring_size)),
+      to_client_(ring_at(*memory_, to_client_at, 1, ring_size)) {}
+
+std::shared_ptr<SlotHolds::Words> SharedRings::holds() const {
+  std::byte* const place = memory_->bytes() + HoldPlaces::first;
+  return {memory_, std::launder(reinterpret_cast<SlotHolds::Words*>(place))};
+}
 
 SharedRings SharedRings::make(std::size_t ring_size, platform::Descriptor& handle,
                               std::error_code& error) {
@@ -53,6 +62,9 @@ SharedRings SharedRings::make(std::size_t ring_size, platform::Descriptor& handl
   std::memcpy(memory.bytes(), &header, sizeof header);
   new (memory.bytes() + to_server_at) Words;
   new (memory.bytes() + to_client_at) Words;
+  for (std::size_t i = 0; i < HoldPlaces::count; ++i) {
+    new (memory.bytes() + HoldPlaces::first + i * sizeof(SlotHolds::Words)) SlotHolds::Words;
+  }
   SharedRings rings(std::move(memory), ring_size);
   // The server's reactor watches the bell before the client has the memory.
   rings.to_server_.words->reader.store(RingReader::Steps::watches);

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <system_error>
 
 #include "runtime/cpp/src/channel/shared_ring.hpp"
+#include "runtime/cpp/src/channel/slot_holds.hpp"
 #include "runtime/cpp/src/platform/shared_memory.hpp"
 
 namespace rr::channel {
@@ -26,18 +28,21 @@ class SharedRings {
   /// Maps what another process has made. Refuses what is not as the page says: invalid_argument.
   static SharedRings open(const platform::Descriptor& handle, std::error_code& error);
 
-  explicit operator bool() const { return static_cast<bool>(memory_); }
+  explicit operator bool() const { return memory_ != nullptr; }
   /// What the client writes, and the server reads.
   [[nodiscard]] const SharedRing& to_server() const { return to_server_; }
   /// The other direction.
   [[nodiscard]] const SharedRing& to_client() const { return to_client_; }
-  [[nodiscard]] std::size_t size() const { return memory_.size(); }
+  [[nodiscard]] std::size_t size() const { return memory_->size(); }
+  /// HoldPlaces::count of them: what the client says of the slots of wires that it reads. They keep
+  /// the memory.
+  [[nodiscard]] std::shared_ptr<SlotHolds::Words> holds() const;
 
  private:
   SharedRings(platform::SharedMemory memory, std::size_t ring_size);
   SharedRings() = default;
 
-  platform::SharedMemory memory_;
+  std::shared_ptr<const platform::SharedMemory> memory_;
   SharedRing to_server_;
   SharedRing to_client_;
 };

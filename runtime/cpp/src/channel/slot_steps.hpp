@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/cpp/src/channel/slot_holds.hpp"
 #include "runtime/cpp/src/channel/synchronization.hpp"
 
 namespace rr::channel {
@@ -31,11 +33,28 @@ struct SlotHead {
   alignas(64) Atomic<std::uint64_t> sequence{0};  ///< see SlotSteps
   Atomic<std::uint64_t> size{0};                  ///< bytes of the value
   Atomic<std::int64_t> published{0};              ///< nanoseconds of the monotonic clock
+  Atomic<std::uint32_t> begin{0};                 ///< where the value begins in the slot
+  Atomic<std::uint32_t> run_count{0};             ///< of the following that there are
+  /// Items of large arrays in the value, in their order: SlotRun.
+  static constexpr std::size_t most_runs = 4;
+  std::array<Atomic<std::uint64_t>, most_runs> runs{};
+};
+
+/// Items of a large array: where they begin in the value, and how many bytes they are.
+struct SlotRun {
+  std::uint32_t begin = 0;
+  std::uint32_t size = 0;
+
+  [[nodiscard]] std::uint64_t packed() const { return std::uint64_t{begin} << 32 | size; }
+  static SlotRun unpack(std::uint64_t packed) {
+    return {static_cast<std::uint32_t>(packed >> 32), static_cast<std::uint32_t>(packed)};
+  }
 };
 
 /// How a value gets into a slot, and how a reader that may be anywhere in its copy finds out that
 /// the next one but a few is being written over it. Value number `n`, from 1 on, has the slot `n`
 /// modulo their number. The slot's sequence is `2 n - 1` while it is written and `2 n` afterwards.
+/// A number whose slot a reader uses is left out.
 template <class Sync>
 struct SlotSteps {
   using Words = SlotWords<Sync>;
@@ -46,6 +65,20 @@ struct SlotSteps {
     // With what came before: a reader that sees this sees the newest number of the time, too.
     head.sequence.store(2 * number - 1, std::memory_order_release);
     Sync::fence_release();
+  }
+  /// The same where readers may use the slot: asks `is_used` about that once no other one can begin
+  /// to. False when one does; then the slot has what it had.
+  template <class IsUsed>
+  [[nodiscard]] static bool try_to_begin(Head& head, std::uint64_t number, IsUsed&& is_used) {
+    const std::uint64_t before = head.sequence.load(std::memory_order_relaxed);
+    // In one order with the reader's word and its look_at_used(): one of both sees the other.
+    head.sequence.store(2 * number - 1);
+    if (is_used()) {
+      head.sequence.store(before, std::memory_order_release);
+      return false;
+    }
+    Sync::fence_release();
+    return true;
   }
   /// The value is there, and the newest.
   static void commit(Words& words, Head& head, std::uint64_t number) {
@@ -69,6 +102,10 @@ struct SlotSteps {
   /// What is in the slot of a number that was the newest. Before the copy.
   static State look(const Head& head, std::uint64_t number, std::uint64_t slots) {
     return state(head.sequence.load(std::memory_order_acquire), number, slots);
+  }
+  /// The same once the reader has said that it uses the slot: while it does, the value stays.
+  static State look_at_used(const Head& head, std::uint64_t number, std::uint64_t slots) {
+    return state(head.sequence.load(), number, slots);
   }
   /// The same after the copy.
   static State look_again(const Head& head, std::uint64_t number, std::uint64_t slots) {

@@ -134,9 +134,15 @@ bool StreamConnection::pass_slots(const SlotWriter& slots) {
   return shared != nullptr && !is_closed() && shared->pass_slots(slots);
 }
 
-std::shared_ptr<SlotReader> StreamConnection::take_slots(std::uint64_t id) {
+std::shared_ptr<SlotReader> StreamConnection::take_slots(std::uint64_t id,
+                                                         std::optional<std::uint32_t> holds) {
   SharedCarrier* const shared = layers_.shared();
-  return shared == nullptr ? nullptr : shared->take_slots(id);
+  return shared == nullptr ? nullptr : shared->take_slots(id, holds);
+}
+
+std::shared_ptr<ServedHolds> StreamConnection::draw_holds() {
+  SharedCarrier* const shared = layers_.shared();
+  return shared == nullptr ? nullptr : shared->draw_holds();
 }
 
 // Bytes that came together with the request did not come through the memory.

@@ -104,7 +104,9 @@ class StreamConnection final : public Connection,
   void reply(Writer& message, Priority priority) override;
   [[nodiscard]] bool shares_slots() const override;
   [[nodiscard]] bool pass_slots(const SlotWriter& slots) override;
-  std::shared_ptr<SlotReader> take_slots(std::uint64_t id) override;
+  std::shared_ptr<SlotReader> take_slots(std::uint64_t id,
+                                         std::optional<std::uint32_t> holds) override;
+  std::shared_ptr<ServedHolds> draw_holds() override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;
   void resign(Waiter& waiter) override;

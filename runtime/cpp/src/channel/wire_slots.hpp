@@ -8,10 +8,13 @@
 #include <memory>
 #include <span>
 #include <system_error>
+#include <vector>
 
 #include "rr/buffer.hpp"
 #include "rr/mutex.hpp"
+#include "rr/reader.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/slot_holds.hpp"
 #include "runtime/cpp/src/channel/slot_steps.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/platform/shared_memory.hpp"
@@ -25,7 +28,6 @@ namespace rr::channel {
 struct SlotSizes {
   static constexpr std::size_t smallest_slot = 4096;
   static constexpr std::size_t largest_slot = std::size_t{16} * 1024 * 1024;
-  static constexpr std::size_t most_slots = 8;
 
   std::size_t slot = 0;   ///< bytes for a value; 0: there can be no such slots
   std::size_t count = 0;  ///< slots
@@ -36,6 +38,8 @@ struct SlotSizes {
   [[nodiscard]] std::size_t memory() const;
   /// Whether a header may say so.
   [[nodiscard]] bool are_right() const;
+  /// Whether values have arrays that are worth to be read in place.
+  [[nodiscard]] bool are_large() const;
 };
 
 /// The side that publishes values. Any thread.
@@ -54,9 +58,14 @@ class SlotWriter {
   /// Whether nothing was published yet.
   [[nodiscard]] bool is_empty() const;
 
-  /// Writes a value into the next slot, and wakes readers if some want that. One that is not later
-  /// than the one before is dropped. False when it does not fit.
+  /// Writes a value into the next slot that no reader uses, and wakes readers if some want that.
+  /// One that is not later than the one before is dropped. False when it does not fit, or all slots
+  /// but that of the newest value are used.
   bool publish(std::span<const Piece> value, std::size_t size, std::int64_t time);
+  /// A reader that says which slots it uses. One that uses more of them than it may, so that none
+  /// was left for a while, is no longer listened to.
+  void add_holds(std::shared_ptr<const ServedHolds> holds);
+  void remove_holds(const ServedHolds& holds);
   /// One reader more wants to be woken; those that sleep look again.
   void add_sleeper();
   void remove_sleeper();
@@ -69,6 +78,10 @@ class SlotWriter {
 
   SlotWriter(platform::SharedMemory memory, platform::Descriptor handle, const SlotSizes& sizes,
              std::uint64_t id);
+  [[nodiscard]] std::uint64_t begin() RR_REQUIRES(mutex_);
+  [[nodiscard]] bool is_used(std::size_t slot) const RR_REQUIRES(mutex_);
+  void refuse_greedy() RR_REQUIRES(mutex_);
+  void put(std::span<const Piece> value, std::size_t size, std::uint64_t number);
   void ring();
 
   const platform::SharedMemory memory_;
@@ -81,13 +94,17 @@ class SlotWriter {
   mutable Mutex mutex_;
   std::uint64_t number_ RR_GUARDED_BY(mutex_) = 0;  // of the last value
   std::int64_t time_ RR_GUARDED_BY(mutex_) = 0;     // and its time
+  std::vector<std::shared_ptr<const ServedHolds>> holds_ RR_GUARDED_BY(mutex_);
+  unsigned without_slot_ RR_GUARDED_BY(mutex_) = 0;  // values in a row
 };
 
-/// A value that was copied out of a slot.
+/// A value that was read from a slot.
 struct SlotValue {
   std::span<const std::byte> bytes{};
-  MemoryRef owner{};  ///< of the bytes; empty: they are in this object
+  MemoryRef owner{};  ///< of the bytes; empty: they stay until the reader reads again
   Time published{};   ///< as its service says; never later than now
+  std::span<const DisplacedItems> displaced{};  ///< as the bytes; the items are in the slot
+  MemoryRef slot{};                             ///< keeps them there
 
   static constexpr std::size_t small = 4096;
   std::array<std::byte, small> room;  // left uninitialized
@@ -105,13 +122,16 @@ class SlotReader {
 
   [[nodiscard]] std::uint64_t id() const { return id_; }
   [[nodiscard]] const SlotSizes& sizes() const { return sizes_; }
+  /// Before it is read: large arrays are read in place, and these say so.
+  void use_holds(std::shared_ptr<SlotHolds> holds) { holds_ = std::move(holds); }
 
   enum class Found : std::uint8_t {
     nothing,  ///< newer than what was read before, or not to be had now
     value,
     wrong,  ///< the memory is not as it can be: nothing more is to be read from it
   };
-  /// Copies out the newest value, if it is newer than what was read before. Throws std::bad_alloc.
+  /// Copies out the newest value, if it is newer than what was read before, but for large arrays
+  /// where they may stay. Throws std::bad_alloc.
   Found read(SlotValue& value);
   /// Any thread: nothing follows what is there.
   [[nodiscard]] bool is_over() const { return words_.is_over.load(std::memory_order_acquire) != 0; }
@@ -128,16 +148,45 @@ class SlotReader {
   using Words = Steps::Words;
   using Head = Steps::Head;
 
+  // What the head of a slot says, read once.
+  struct Contents {
+    explicit Contents(const Head& head);
+    [[nodiscard]] bool are_right(const SlotSizes& sizes) const;
+
+    std::uint64_t size;
+    std::int64_t published;
+    std::uint32_t begin;
+    std::uint32_t run_count;
+    std::array<SlotRun, Head::most_runs> runs;
+  };
+  // Where the parts of a value are put that are not left in its slot, as far apart as there.
+  struct Gapped {
+    explicit Gapped(std::size_t slot_size);
+    ~Gapped();
+    Gapped(const Gapped&) = delete;
+    Gapped& operator=(const Gapped&) = delete;
+
+    const std::size_t size;
+    std::byte* const bytes;
+    std::array<DisplacedItems, Head::most_runs> displaced{};
+  };
+  class Use;
+
   SlotReader(platform::SharedMemory memory, const SlotSizes& sizes, std::uint64_t id);
   Found read_number(std::uint64_t number, SlotValue& value, bool& is_torn);
+  MemoryRef use(std::size_t slot, std::uint64_t number);
+  void copy(const std::byte* slot, const Contents& contents, SlotValue& value);
+  void copy_around(const std::byte* slot, const Contents& contents, SlotValue& value);
 
-  const platform::SharedMemory memory_;
+  const std::shared_ptr<const platform::SharedMemory> memory_;
   const SlotSizes sizes_;
   const std::uint64_t id_;
   const Words& words_;
   const Head* const heads_;
   std::atomic<bool> is_interrupted_{false};
   std::uint64_t seen_ = 0;  // the number of the value that was read last
+  std::shared_ptr<SlotHolds> holds_;
+  std::unique_ptr<Gapped> gapped_;
 };
 
 }  // namespace rr::channel

@@ -44,8 +44,8 @@ SlotMode ClientWireEnd::wanted_mode() const {
 // What the service has answered to a request for slots. With the read lease.
 void ClientWireEnd::take_slots(Decoder& decoder, const Entry& entry) {
   if (!connection().shares_slots()) return;
-  const std::uint64_t id = endpoint::find_slots(decoder, entry);
-  std::shared_ptr<SlotReader> passed = id == 0 ? nullptr : connection().take_slots(id);
+  const auto [id, holds] = endpoint::find_slots(decoder, entry);
+  std::shared_ptr<SlotReader> passed = id == 0 ? nullptr : connection().take_slots(id, holds);
   bool is_missing = false;
   bool is_wanted = is_awaited();
   {
@@ -94,7 +94,7 @@ void ClientWireEnd::read_slots(bool tells_here) {
     return;
   }
   if (found == SlotReader::Found::value) {
-    take_slot(value.bytes, value.owner, value.published, *session_->types(), tells_here);
+    take_slot(value, *session_->types(), tells_here);
   }
   if (is_over) ask(is_awaited() ? SlotMode::woken : SlotMode::polled);
 }

@@ -29,6 +29,17 @@ void Decoder::set_budget(ContainerBudget& budget) {
               "the containers of the message need more memory than they may take", element);
 }
 
+Decoder::Located Decoder::locate_displaced(std::span<const std::byte> payload) const {
+  const std::byte* const begin = payload.data();
+  for (const DisplacedItems& one : displaced_) {
+    const std::byte* const gap = one.gap.data();
+    if (begin >= gap && begin + payload.size() <= gap + one.gap.size()) {
+      return {{one.items + (begin - gap), payload.size()}, &displaced_owner_, true};
+    }
+  }
+  return {payload, owner_ ? &owner_ : nullptr, false};
+}
+
 [[gnu::hot]] bool ElementReader::next(Element& element) {
   return decoder_->version() == MessageVersion::v4 ? next_v4(element) : next_v2(element);
 }

@@ -345,7 +345,7 @@ void Writer::message_v2(const MessageHeader& header, std::uint32_t entry_count) 
   };
   for (auto attachment = attachments_.rbegin(); attachment != attachments_.rend(); ++attachment) {
     add_until(end_ - attachment->position);
-    pieces_.push_back({attachment->data.data(), attachment->data.size()});
+    pieces_.push_back({attachment->data.data(), attachment->data.size(), true});
   }
   add_until(end_);
   return pieces_;

@@ -80,7 +80,7 @@ TEST(Connections, HaveNoSlotsByThemselves) {
   rr::testing::FakeConnection fake;
   channel::Connection& connection = fake;
   EXPECT_FALSE(connection.shares_slots());
-  EXPECT_EQ(connection.take_slots(1), nullptr);
+  EXPECT_EQ(connection.take_slots(1, std::nullopt), nullptr);
   std::error_code error;
   const auto slots = channel::SlotWriter::make(channel::SlotSizes::for_value(1), 1, error);
   if (!slots) GTEST_SKIP() << "this system has no shared memory";

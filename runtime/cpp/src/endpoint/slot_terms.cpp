@@ -19,6 +19,13 @@ bool find_number(Decoder& decoder, const Entry& entry, std::string_view name, El
   return true;
 }
 
+template <class T>
+void write_number(Writer& writer, std::string_view name, ElementType type, T value) {
+  const std::size_t end = writer.position();
+  writer.prepend_bytes(&value, sizeof value);
+  writer.element(name, type, {}, 1, end);
+}
+
 }  // namespace
 
 std::optional<SlotMode> find_slot_mode(Decoder& decoder, const Entry& entry,
@@ -29,16 +36,18 @@ std::optional<SlotMode> find_slot_mode(Decoder& decoder, const Entry& entry,
   return static_cast<SlotMode>(mode);
 }
 
-std::uint64_t find_slots(Decoder& decoder, const Entry& entry) {
-  std::uint64_t id = 0;
-  const bool is_there = find_number(decoder, entry, slots_element, ElementType::uint64, id);
-  return is_there ? id : 0;
+SlotTerms find_slots(Decoder& decoder, const Entry& entry) {
+  SlotTerms terms;
+  if (!find_number(decoder, entry, slots_element, ElementType::uint64, terms.id)) return {};
+  std::uint32_t holds = 0;
+  if (find_number(decoder, entry, holds_element, ElementType::uint32, holds)) terms.holds = holds;
+  return terms;
 }
 
-void write_slots(Writer& writer, std::uint64_t id) {
-  const std::size_t end = writer.position();
-  writer.prepend_bytes(&id, sizeof id);
-  writer.element(slots_element, ElementType::uint64, {}, 1, end);
+std::uint32_t write_slots(Writer& writer, const SlotTerms& terms) {
+  if (terms.holds) write_number(writer, holds_element, ElementType::uint32, *terms.holds);
+  write_number(writer, slots_element, ElementType::uint64, terms.id);
+  return terms.holds ? 2 : 1;
 }
 
 }  // namespace rr::endpoint

@@ -17,6 +17,8 @@ namespace rr::endpoint {
 inline constexpr std::string_view slots_element = "robdef.slots";
 /// The same in a request that changes how values of a connected wire come.
 inline constexpr std::string_view slots_again_element = "robdef.slots_again";
+/// In the answer, an uint32: the place of the words by which the client says which slots it uses.
+inline constexpr std::string_view holds_element = "robdef.holds";
 
 /// How a client wants the values of a wire.
 enum class SlotMode : std::uint32_t {
@@ -28,9 +30,15 @@ enum class SlotMode : std::uint32_t {
 /// A mode of that name; nothing when there is none, or none that is known.
 [[nodiscard]] std::optional<SlotMode> find_slot_mode(Decoder& decoder, const Entry& entry,
                                                      std::string_view name);
-/// The number of the memory in an answer; 0: none.
-[[nodiscard]] std::uint64_t find_slots(Decoder& decoder, const Entry& entry);
-/// Writes that number as an element.
-void write_slots(Writer& writer, std::uint64_t id);
+/// What the service answers.
+struct SlotTerms {
+  std::uint64_t id = 0;                  ///< the number of the memory; 0: none
+  std::optional<std::uint32_t> holds{};  ///< without one, values are copied out of it
+};
+
+/// What an answer says.
+[[nodiscard]] SlotTerms find_slots(Decoder& decoder, const Entry& entry);
+/// Writes it, and returns the number of elements.
+std::uint32_t write_slots(Writer& writer, const SlotTerms& terms);
 
 }  // namespace rr::endpoint

@@ -7,6 +7,7 @@
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/newest_steps.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 
@@ -119,18 +120,18 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
   if (must_start) start_telling();
 }
 
-void WireEnd::State::take_slot(std::span<const std::byte> elements, const MemoryRef& owner,
-                               channel::Time published, const TypeRegistry& types,
+void WireEnd::State::take_slot(const channel::SlotValue& slot, const TypeRegistry& types,
                                bool tells_here) {
   if (!may_receive_ || member_.holding == nullptr) return;
   Entry entry;
-  entry.elements = elements;
+  entry.elements = slot.bytes;
   entry.element_count = endpoint::wire_elements;
   std::shared_ptr<void> made;
-  endpoint::Arrival arrival({}, published);
+  endpoint::Arrival arrival({}, slot.published);
   try {
     made = member_.holding->make();
-    Decoder decoder(MessageVersion::v4, nullptr, owner, &types);
+    Decoder decoder(MessageVersion::v4, nullptr, slot.owner, &types);
+    decoder.set_displaced(slot.displaced, slot.slot);
     endpoint::read_wire(decoder, entry, *member_.type, arrival, made.get());
   } catch (const std::exception& error) {
     channel::DeferredCallbacks deferred;

@@ -25,6 +25,11 @@
 #include "runtime/cpp/src/endpoint/subscription.hpp"
 
 namespace rr {
+namespace channel {
+
+struct SlotValue;
+
+}  // namespace channel
 namespace endpoint {
 
 template <class End>
@@ -86,11 +91,10 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   void finish_now();
   /// A value that cannot be read.
   void refuse(const std::exception& why, channel::DeferredCallbacks& deferred);
-  /// A value that was copied out of a slot: the elements of a packet in format 4, and when that was
-  /// published. What does not count is dropped. `tells_here`: this thread of the node calls the
-  /// functions of the program, else another one does.
-  void take_slot(std::span<const std::byte> elements, const MemoryRef& owner,
-                 channel::Time published, const TypeRegistry& types, bool tells_here);
+  /// A value that was read from a slot: the elements of a packet in format 4. What does not count
+  /// is dropped. `tells_here`: this thread of the node calls the functions of the program, else
+  /// another one does.
+  void take_slot(const channel::SlotValue& slot, const TypeRegistry& types, bool tells_here);
   /// Whether threads or functions of the program wait for values.
   [[nodiscard]] bool is_awaited() const;
   /// Keeps what is being sent as what was sent last.

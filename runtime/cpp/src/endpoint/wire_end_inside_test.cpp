@@ -47,7 +47,11 @@ class FakeEnd final : public WireEnd::State {
  private:
   void look() override {
     if (slot.empty()) return;
-    take_slot(std::exchange(slot, {}), {}, published, *core().types(), false);
+    const std::vector<std::byte> bytes = std::exchange(slot, {});
+    channel::SlotValue value;
+    value.bytes = bytes;
+    value.published = published;
+    take_slot(value, *core().types(), false);
   }
   void on_awaited() override { ++awaited; }
   [[nodiscard]] std::shared_ptr<const void> sent_to_all(SenderTime& time) const override {

@@ -84,6 +84,7 @@ void OfferedWire::send_all(const void* value) {
   member_.holding->copy(value, kept.get());
   std::shared_ptr<const void> before;
   std::shared_ptr<const Ends> ends;
+  std::shared_ptr<const Ends> all;
   std::shared_ptr<channel::SlotWriter> memory;
   std::shared_ptr<channel::SlotWriter> ended;
   endpoint::SenderTime time = 0;
@@ -100,11 +101,13 @@ void OfferedWire::send_all(const void* value) {
       memory = nullptr;
     }
     ends = told_;
+    all = ends_;
   }
   const TimeSpec stamp = endpoint::as_time_spec(time);
   if (memory) {
     Writer& elements = packet.finish(MessageVersion::v4, stamp);
-    memory->publish(elements.pieces(), elements.size(), time);
+    // Readers that use all slots get this value as others do.
+    if (!memory->publish(elements.pieces(), elements.size(), time)) ends = all;
   }
   for (std::size_t i = 0; i < ends->size(); ++i) {
     // What the next ones touch is in no cache when there are a thousand of them.
@@ -131,7 +134,7 @@ void OfferedWire::send_last(const End& end, const Last& last) const {
                    last.time);
 }
 
-std::uint64_t OfferedWire::join(const End& end, endpoint::SlotMode mode) {
+endpoint::SlotTerms OfferedWire::join(const End& end, endpoint::SlotMode mode) {
   Last last;
   Shared<Connected> connected;
   {
@@ -146,64 +149,63 @@ std::uint64_t OfferedWire::join(const End& end, endpoint::SlotMode mode) {
     last = last_for(*end);
     connected = connected_;
   }
-  std::uint64_t id = 0;
+  endpoint::SlotTerms terms;
   if (mode == endpoint::SlotMode::messages) {
     send_last(end, last);
   } else {
-    id = use_slots(end, mode == endpoint::SlotMode::woken);
+    terms = use_slots(end, mode == endpoint::SlotMode::woken);
   }
   if (connected) (*connected)(WireEnd(end));
-  return id;
+  return terms;
 }
 
-std::uint64_t OfferedWire::change(const End& end, endpoint::SlotMode mode) {
+endpoint::SlotTerms OfferedWire::change(const End& end, endpoint::SlotMode mode) {
   if (mode != endpoint::SlotMode::messages) {
     return use_slots(end, mode == endpoint::SlotMode::woken);
   }
   use_messages(end);
-  return 0;
+  return {};
 }
 
 // A client that does not get slots gets the newest value by a message, since it may have had slots
 // until now.
-std::uint64_t OfferedWire::use_slots(const End& end, bool is_woken) {
-  std::shared_ptr<channel::SlotWriter> memory;
-  bool is_new = false;
-  Last last;
-  if (!put_in_slots(end, is_woken, memory, is_new, last)) {
+endpoint::SlotTerms OfferedWire::use_slots(const End& end, bool is_woken) {
+  Reading reading;
+  if (!put_in_slots(end, is_woken, reading)) {
     use_messages(end);
-    return 0;
+    return {};
   }
-  if (!is_new) return memory->id();
-  if (last.value && memory->is_empty()) {
+  if (!reading.is_new) return reading.terms;
+  channel::SlotWriter& memory = *reading.memory;
+  if (const Last& last = reading.last; last.value && memory.is_empty()) {
     Packet packet(member_, last.value.get());
     Writer& elements = packet.finish(MessageVersion::v4, endpoint::as_time_spec(last.time));
-    memory->publish(elements.pieces(), elements.size(), last.time);
+    memory.publish(elements.pieces(), elements.size(), last.time);
   }
-  if (end->pass_slots(*memory)) return memory->id();
+  if (end->pass_slots(memory)) return reading.terms;
   use_messages(end);
-  return 0;
+  return {};
 }
 
 // False when there are none for this end.
-bool OfferedWire::put_in_slots(const End& end, bool is_woken,
-                               std::shared_ptr<channel::SlotWriter>& memory, bool& is_new,
-                               Last& last) {
+bool OfferedWire::put_in_slots(const End& end, bool is_woken, Reading& reading) {
   const MutexLock lock(mutex_);
   if (!has_end(*ends_, *end)) return false;  // it has left meanwhile
-  is_new = !readers_.has(*end);
-  if (is_new) {
+  reading.is_new = !readers_.has(*end);
+  if (reading.is_new) {
     if (!end->may_send() || !readers_.add(*end, end->is_restricted(), value_size_,
                                           end->node_slots(), end->session_slots())) {
       return false;
     }
     told_ = without_end(*told_, *end);
     end->note_slots();
-    last = last_for(*end);
-    if (last.value && readers_.memory()->is_empty()) in_time_ = last.time;
+    reading.last = last_for(*end);
+    if (reading.last.value && readers_.memory()->is_empty()) in_time_ = reading.last.time;
   }
   readers_.set_woken(*end, is_woken);
-  memory = readers_.memory();
+  reading.memory = readers_.memory();
+  reading.terms.id = reading.memory->id();
+  if (const auto& holds = readers_.holds(*end)) reading.terms.holds = holds->place();
   return true;
 }
 

@@ -47,12 +47,12 @@ class OfferedWire {
   void set_received(Received function);
 
   // What its clients do.
-  /// Takes part from now on, and gets what was sent last, before the object is told. Returns the
-  /// number of the memory with its slots; 0: values come by messages.
-  std::uint64_t join(const End& end, endpoint::SlotMode mode);
+  /// Takes part from now on, and gets what was sent last, before the object is told. Returns which
+  /// slots the client reads.
+  endpoint::SlotTerms join(const End& end, endpoint::SlotMode mode);
   void leave(const ServedWireEnd& end);
   /// A client that takes part wants to get values otherwise. Returns as join().
-  std::uint64_t change(const End& end, endpoint::SlotMode mode);
+  endpoint::SlotTerms change(const End& end, endpoint::SlotMode mode);
   /// Whoever reads by slots has to ask for them once more: they may not be for all any more.
   void renew_slots();
   /// What was sent to all last, and its time; null for nothing.
@@ -75,9 +75,15 @@ class OfferedWire {
   };
   [[nodiscard]] Last last_for(const ServedWireEnd& end) RR_REQUIRES(mutex_);
   void send_last(const End& end, const Last& last) const;
-  std::uint64_t use_slots(const End& end, bool is_woken);
-  bool put_in_slots(const End& end, bool is_woken, std::shared_ptr<channel::SlotWriter>& memory,
-                    bool& is_new, Last& last);
+  endpoint::SlotTerms use_slots(const End& end, bool is_woken);
+  // What an end that reads slots is to know, and what it has to be given.
+  struct Reading {
+    std::shared_ptr<channel::SlotWriter> memory;
+    endpoint::SlotTerms terms;
+    bool is_new = false;
+    Last last;
+  };
+  bool put_in_slots(const End& end, bool is_woken, Reading& reading);
   void use_messages(const End& end);
   std::shared_ptr<channel::SlotWriter> end_slots() RR_REQUIRES(mutex_);
 

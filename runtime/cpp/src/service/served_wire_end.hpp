@@ -53,6 +53,10 @@ class ServedWireEnd final : public WireEnd::State {
   [[nodiscard]] bool pass_slots(const channel::SlotWriter& memory) const {
     return connection().pass_slots(memory);
   }
+  /// Words by which the client says which slots it uses; null for none.
+  [[nodiscard]] std::shared_ptr<channel::ServedHolds> draw_holds() const {
+    return connection().draw_holds();
+  }
   /// What memories of the node, and of the session, are counted in.
   [[nodiscard]] const std::shared_ptr<channel::SlotBudget>& node_slots() const {
     return core().slot_budget();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/cpp/src/platform/random.hpp"
+#include "runtime/cpp/src/service/served_wire_end.hpp"
 
 namespace rr::service {
 namespace {
@@ -61,7 +62,10 @@ bool SlotReaders::add(const ServedWireEnd& end, bool is_restricted, std::size_t 
     if (readers_.empty()) memory_.reset();
     return false;
   }
-  readers_.push_back({&end, is_restricted, false, std::move(share)});
+  std::shared_ptr<channel::ServedHolds> holds;
+  if (memory_->sizes().are_large()) holds = end.draw_holds();
+  if (holds) memory_->add_holds(holds);
+  readers_.push_back({&end, is_restricted, false, std::move(share), std::move(holds)});
   return true;
 }
 
@@ -80,6 +84,7 @@ bool SlotReaders::remove(const ServedWireEnd& end) {
   const std::size_t place = find(end);
   if (place == readers_.size()) return false;
   set_woken(end, false);
+  if (const auto& holds = readers_[place].holds) memory_->remove_holds(*holds);
   readers_.erase(readers_.begin() + static_cast<std::ptrdiff_t>(place));
   if (readers_.empty()) memory_.reset();
   return true;

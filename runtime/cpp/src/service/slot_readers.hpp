@@ -32,6 +32,10 @@ class SlotReaders {
   bool add(const ServedWireEnd& end, bool is_restricted, std::size_t value_size,
            const std::shared_ptr<channel::SlotBudget>& of_node,
            const std::shared_ptr<channel::SlotBudget>& of_session);
+  /// The words by which the client of an end that is here says what it uses; null for none.
+  [[nodiscard]] const std::shared_ptr<channel::ServedHolds>& holds(const ServedWireEnd& end) const {
+    return readers_[find(end)].holds;
+  }
   /// Whether the client of an end that is here wants to be woken.
   void set_woken(const ServedWireEnd& end, bool is_woken);
   /// False when it was not here.
@@ -45,6 +49,7 @@ class SlotReaders {
     bool is_restricted = false;
     bool is_woken = false;
     channel::SlotShare share;  // of its session
+    std::shared_ptr<channel::ServedHolds> holds;
   };
   [[nodiscard]] std::size_t find(const ServedWireEnd& end) const;
   bool make(std::size_t value_size, const std::shared_ptr<channel::SlotBudget>& of_node);

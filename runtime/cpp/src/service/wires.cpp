@@ -91,7 +91,7 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
   if (answer_change(question, *object, member)) return;
   if (!table_.find(object->path, member.name)) endpoint_.ask_keeper_to_connect(question, member);
   std::shared_ptr<ServedWireEnd> end;
-  std::uint64_t slots = 0;
+  endpoint::SlotTerms slots;
   while (!(end = connect(question, object, member, slots))) {
     // It was released meanwhile: the client gets the one that is there now.
     auto next = endpoint_.find_object(question.entry.service_path);
@@ -105,14 +105,14 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
   if (end->is_released()) end->send_closed();
 }
 
-void Wires::answer_connected(const Question& question, std::uint64_t slots) {
-  if (slots == 0) {
+void Wires::answer_connected(const Question& question, const endpoint::SlotTerms& slots) {
+  if (slots.id == 0) {
     endpoint_.answer_empty(question);
     return;
   }
   Writer& writer = endpoint_.begin_answer(question);
-  endpoint::write_slots(writer, slots);
-  writer.entry(endpoint::answer_header(question.entry), 1, 0);
+  const std::uint32_t element_count = endpoint::write_slots(writer, slots);
+  writer.entry(endpoint::answer_header(question.entry), element_count, 0);
   endpoint_.finish(question, writer);
 }
 
@@ -135,7 +135,7 @@ bool Wires::answer_change(const Question& question, const ServedObject& object,
 // Null when the object is no longer the one at its path.
 std::shared_ptr<ServedWireEnd> Wires::connect(const Question& question,
                                               const std::shared_ptr<const ServedObject>& object,
-                                              const Member& member, std::uint64_t& slots) {
+                                              const Member& member, endpoint::SlotTerms& slots) {
   auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
   if (!end) {
     end = std::make_shared<ServedWireEnd>(endpoint_.shared_from_this(), object, member);

@@ -10,6 +10,7 @@
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/slot_budget.hpp"
+#include "runtime/cpp/src/endpoint/slot_terms.hpp"
 #include "runtime/cpp/src/endpoint/wire_table.hpp"
 
 namespace rr::service {
@@ -48,14 +49,14 @@ class Wires {
   void end_all(channel::DeferredCallbacks& deferred);
 
  private:
-  void answer_connected(const Question& question, std::uint64_t slots);
+  void answer_connected(const Question& question, const endpoint::SlotTerms& slots);
   bool answer_change(const Question& question, const ServedObject& object, const Member& member);
   void answer_packet(const Question& question, const ServedObject& object, const Member& member);
   void answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                       const Member& member);
   std::shared_ptr<ServedWireEnd> connect(const Question& question,
                                          const std::shared_ptr<const ServedObject>& object,
-                                         const Member& member, std::uint64_t& slots);
+                                         const Member& member, endpoint::SlotTerms& slots);
   void answer_disconnect(const Question& question, const ServedObject& object,
                          const Member& member);
   void answer_peek(const Question& question, const ServedObject& object, const Member& member);

@@ -149,7 +149,7 @@ bool open_items(Decoder& decoder, const Element& element, const ItemType& item,
   if (number == ElementType::void_) {
     return read_pods(decoder, received.element, record_of(item), items);
   }
-  const std::span<const std::byte> packed = received.element.payload;
+  const std::span<const std::byte> packed = decoder.locate(received.element.payload).items;
   if (number == ElementType::bool_) {
     copy_bools(static_cast<std::byte*>(items), packed.data(), packed.size());
   } else {
@@ -161,11 +161,12 @@ bool open_items(Decoder& decoder, const Element& element, const ItemType& item,
 bool read_array(Decoder& decoder, const ReceivedItems& received, const ItemType& item,
                 ArrayStorage& array) {
   const ElementType number = packed_type(item);
-  const std::span<const std::byte> packed = received.element.payload;
-  if (number != ElementType::void_ && packed.size() >= slice_threshold && decoder.owner() &&
+  const auto [packed, owner, is_displaced] = decoder.locate(received.element.payload);
+  if (number != ElementType::void_ && packed.size() >= slice_threshold && owner != nullptr &&
       is_aligned(packed.data(), alignment_of(number)) &&
-      (number != ElementType::bool_ || !has_odd_bools(packed.data(), packed.size()))) {
-    array.share(packed.data(), received.count, decoder.owner());
+      (number != ElementType::bool_ ||
+       (!is_displaced && !has_odd_bools(packed.data(), packed.size())))) {
+    array.share(packed.data(), received.count, *owner);
     return true;
   }
   const std::size_t bytes = std::size_t{received.count} * item.size;
