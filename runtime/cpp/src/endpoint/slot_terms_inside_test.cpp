@@ -30,7 +30,7 @@ class Written {
     Decoder decoder(message_.version, &message_.strings);
     return find_slot_mode(decoder, entry_, name);
   }
-  [[nodiscard]] std::uint64_t slots() const {
+  [[nodiscard]] SlotTerms slots() const {
     Decoder decoder(message_.version, &message_.strings);
     return find_slots(decoder, entry_);
   }
@@ -77,14 +77,20 @@ TEST(SlotTerms, WhatIsNoModeIsNone) {
   EXPECT_EQ(two.mode(slots_element), std::nullopt);
 }
 
-TEST(SlotTerms, TheNumberOfAMemoryIsWrittenAndFound) {
-  const Written answer([](Writer& writer) {
-    write_slots(writer, 0x0123456789ABCDEF);
-    return 1U;
-  });
-  EXPECT_EQ(answer.slots(), 0x0123456789ABCDEFU);
-  EXPECT_EQ(with_mode(slots_element, 1).slots(), 0U);
-  EXPECT_EQ(Written([](Writer&) { return 0U; }).slots(), 0U);
+TEST(SlotTerms, WhatAServiceAnswersIsWrittenAndFound) {
+  constexpr std::uint64_t id = 0x0123456789ABCDEF;
+  for (const std::optional<std::uint32_t> holds : {std::optional<std::uint32_t>(), {0}, {47}}) {
+    const Written answer([&](Writer& writer) {
+      const std::uint32_t count = write_slots(writer, {id, holds});
+      EXPECT_EQ(count, holds ? 2U : 1U);
+      return count;
+    });
+    EXPECT_EQ(answer.slots().id, id);
+    EXPECT_EQ(answer.slots().holds, holds);
+  }
+  EXPECT_EQ(with_mode(slots_element, 1).slots().id, 0U);
+  EXPECT_EQ(with_mode(holds_element, 1).slots().holds, std::nullopt) << "of no memory";
+  EXPECT_EQ(Written([](Writer&) { return 0U; }).slots().id, 0U);
 }
 
 }  // namespace

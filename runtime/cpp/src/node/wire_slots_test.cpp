@@ -257,6 +257,78 @@ TEST_F(WireSlots, AValueTooLargeForASlotIsAMessage) {
   EXPECT_TRUE(eventually([&] { return trace.in().size() == 5; }));
 }
 
+// Whether the items are in a memory that this process has mapped to read.
+bool is_in_slot(const Array<double>& trace) {
+  const auto place = reinterpret_cast<std::uintptr_t>(trace.data());
+  const std::vector<Mapping> all = mappings();
+  return std::ranges::any_of(all, [&](const Mapping& mapping) {
+    const auto begin = reinterpret_cast<std::uintptr_t>(mapping.begin);
+    return mapping.kind == 2 && !mapping.is_writable && place >= begin &&
+           place < begin + mapping.size;
+  });
+}
+bool are_all(const Array<double>& trace, double number) {
+  return std::ranges::all_of(trace, [&](double item) { return item == number; });
+}
+constexpr std::size_t large = 50'000;
+
+TEST_F(WireSlots, LargeArraysAreReadInTheirSlotAndStayThere) {
+  serve(options());
+  auto trace = connect(options())->trace().connect();
+  object_->trace().set_in(trace_of(large, 1));
+  ASSERT_TRUE(eventually([&] { return !trace.in().empty() && is_in_slot(trace.in()); }));
+  const Array<double> first = trace.in();
+  for (int i = 2; i <= 50; ++i) {
+    object_->trace().set_in(trace_of(large, i));
+    ASSERT_TRUE(eventually([&] { return trace.in()[0] == i; })) << i;
+    ASSERT_TRUE(are_all(first, 1)) << i;
+  }
+  EXPECT_TRUE(is_in_slot(trace.in()));
+  Array<double> changed = first;
+  changed.mutate()[0] = 7;
+  EXPECT_FALSE(is_in_slot(changed));
+  EXPECT_EQ(first[0], 1);
+}
+
+// Those that keep more than two get copies; those that keep all slots together get messages.
+TEST_F(WireSlots, ValuesThatAreKeptKeepNoOthersAway) {
+  serve(options());
+  object_->trace().set_in(trace_of(large, 0));
+  std::vector<WireConnection<Array<double>>> traces;
+  for (int i = 0; i < 4; ++i) traces.push_back(connect(options())->trace().connect());
+  std::vector<std::pair<double, Array<double>>> kept;
+  for (int i = 1; i <= 40; ++i) {
+    object_->trace().set_in(trace_of(large, i));
+    auto& trace = traces[static_cast<std::size_t>(i) % traces.size()];
+    ASSERT_TRUE(eventually([&] { return trace.in()[0] == i; })) << i;
+    kept.emplace_back(i, trace.in());
+  }
+  for (auto& trace : traces) EXPECT_TRUE(eventually([&] { return trace.in()[0] == 40; }));
+  for (const auto& [number, array] : kept) EXPECT_TRUE(are_all(array, number)) << number;
+  EXPECT_EQ(published(), 1U);
+  kept.clear();
+  object_->trace().set_in(trace_of(large, 41));
+  for (auto& trace : traces) {
+    EXPECT_TRUE(eventually([&] { return trace.in()[0] == 41 && is_in_slot(trace.in()); }));
+  }
+}
+
+TEST_F(WireSlots, AnArrayOutlivesItsServiceAndItsNode) {
+  serve(options());
+  object_->trace().set_in(trace_of(large, 3));
+  auto trace = connect(options())->trace().connect();
+  Array<double> kept = trace.in();
+  ASSERT_TRUE(is_in_slot(kept));
+  trace.close();
+  auto again = clients_.back().client->trace().connect();
+  ASSERT_TRUE(eventually([&] { return again.in()[0] == 3; }));
+  again.close();
+  clients_.clear();
+  server_.reset();
+  EXPECT_TRUE(are_all(kept, 3));
+  kept = {};
+}
+
 // Values for one client are messages. Whichever way is faster, none gets an older value.
 TEST_F(WireSlots, ValuesForOneAndForAllKeepTheirOrder) {
   serve(options());
@@ -498,6 +570,11 @@ TEST_F(WireSlots, AReaderThatIsStoppedHoldsUpNobody) {
   }
   auto late = connect(options())->trace().connect();
   EXPECT_EQ(late.in().size(), 2000U);
+  for (int i = 1; i <= 50; ++i) {
+    object_->trace().set_in(trace_of(large, i));
+    ASSERT_TRUE(eventually([&] { return late.in().size() == large && late.in()[0] == i; })) << i;
+  }
+  object_->trace().set_in(trace_of(2000, 1));
   reader.signal(SIGCONT);
   reader.wait_for("at 2000");
 }

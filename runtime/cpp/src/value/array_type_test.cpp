@@ -172,6 +172,61 @@ TEST(ReceivedArray, OfBoolsIsASliceOnlyIfAllBytesAreRight) {
   EXPECT_TRUE(copy[4999]);
 }
 
+// Of a message whose items are elsewhere, as those of a slot in shared memory.
+class DisplacedArray : public ::testing::Test {
+ protected:
+  // The items of the array of `received` move, and others are in their place.
+  void displace(Received& received) {
+    const std::span<const std::byte> gap = received.root.payload;
+    std::memcpy(elsewhere_.bytes, gap.data(), gap.size());
+    std::memset(const_cast<std::byte*>(gap.data()), 0x55, gap.size());
+    displaced_ = {gap, elsewhere_.bytes};
+    received.decoder.set_displaced({&displaced_, 1}, elsewhere_.owner);
+  }
+  [[nodiscard]] bool is_elsewhere(const void* data) const {
+    return data >= elsewhere_.bytes && data < elsewhere_.bytes + 8192;
+  }
+
+  Allocation elsewhere_ = allocate(8192);
+  DisplacedItems displaced_;
+};
+
+TEST_F(DisplacedArray, IsASliceOfWhereItIs) {
+  const Array<double> array = counting(512);
+  Received received(encode(array), 16 - header_size);
+  displace(received);
+  const auto slice = received.read<Array<double>>();
+  EXPECT_TRUE(is_elsewhere(slice.data()));
+  EXPECT_EQ(slice, array);
+  EXPECT_FALSE(elsewhere_.owner.is_unique());
+}
+
+TEST_F(DisplacedArray, IsCopiedFromThereWhenSmallOrOfBools) {
+  const Array<double> array = counting(511);
+  Received received(encode(array), 16 - header_size);
+  displace(received);
+  const auto copy = received.read<Array<double>>();
+  EXPECT_FALSE(is_elsewhere(copy.data()));
+  EXPECT_EQ(copy, array);
+  Array<bool> bools(5000);
+  bools.mutate()[4999] = true;
+  Received flags(encode(bools), 0);
+  displace(flags);
+  const auto copied = flags.read<Array<bool>>();
+  EXPECT_FALSE(is_elsewhere(copied.data())) << "another process may change a byte to no bool";
+  EXPECT_EQ(copied, bools);
+}
+
+TEST_F(DisplacedArray, BesideAnotherOneIsFoundByItsPlace) {
+  const Array<double> array = counting(512);
+  Received received(encode(array), 16 - header_size);
+  displaced_ = {received.root.payload.first(4088), elsewhere_.bytes};
+  received.decoder.set_displaced({&displaced_, 1}, elsewhere_.owner);
+  const auto slice = received.read<Array<double>>();
+  EXPECT_TRUE(received.holds(slice.data())) << "it is not all in the gap";
+  EXPECT_EQ(slice, array);
+}
+
 TEST(ReceivedArray, OfNamedarraysIsASliceToo) {
   using conformance::types::Vector3;
   Array<Vector3> points(200);

@@ -64,7 +64,8 @@ class SecondMapping {
   [[nodiscard]] bool is_there() const { return bytes_ != MAP_FAILED; }
   /// Writes something at a place of it, of the words most of the time.
   void scribble(std::mt19937_64& random) const {
-    const std::size_t most = random() % 4 == 0 ? size_ : std::size_t{0x300};
+    const std::size_t words = random() % 2 == 0 ? 0x300 : 0x1000;
+    const std::size_t most = random() % 4 == 0 ? size_ : words;
     const std::uint64_t value = random() >> (random() % 64);
     const std::size_t at = random() % (most - sizeof value) & ~std::size_t{3};
     std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, 1 + random() % sizeof value);
