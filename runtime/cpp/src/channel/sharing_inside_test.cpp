@@ -200,7 +200,7 @@ TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
   const auto taken = client->take_slots(7);
   ASSERT_NE(taken, nullptr);
   EXPECT_EQ(taken->id(), 7U);
-  EXPECT_EQ(server_->take_slots(7), nullptr);
+  EXPECT_EQ(server_->take_slots(7, std::nullopt), nullptr);
 }
 
 TEST_F(SharingTest, OfAPeerThatKnowsNoSlotsNothingChanges) {

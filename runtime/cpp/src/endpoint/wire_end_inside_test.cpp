@@ -12,6 +12,7 @@
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
 #include "runtime/cpp/src/endpoint/testing/fake_connection.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"

@@ -276,7 +276,8 @@ TEST_F(WireSlots, LargeArraysAreReadInTheirSlotAndStayThere) {
   serve(options());
   auto trace = connect(options())->trace().connect();
   object_->trace().set_in(trace_of(large, 1));
-  ASSERT_TRUE(eventually([&] { return !trace.in().empty() && is_in_slot(trace.in()); }));
+  ASSERT_TRUE(trace.wait_in(plenty));
+  ASSERT_TRUE(eventually([&] { return is_in_slot(trace.in()); })) << "the first one is a message";
   const Array<double> first = trace.in();
   for (int i = 2; i <= 50; ++i) {
     object_->trace().set_in(trace_of(large, i));
@@ -574,7 +575,7 @@ TEST_F(WireSlots, AReaderThatIsStoppedHoldsUpNobody) {
     object_->trace().set_in(trace_of(large, i));
     ASSERT_TRUE(eventually([&] { return late.in().size() == large && late.in()[0] == i; })) << i;
   }
-  object_->trace().set_in(trace_of(2000, 1));
+  object_->trace().set_in(trace_of(2000, 2000));
   reader.signal(SIGCONT);
   reader.wait_for("at 2000");
 }
