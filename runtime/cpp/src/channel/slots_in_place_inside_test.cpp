@@ -121,6 +121,22 @@ TEST_F(SlotsInPlace, AReaderUsesTwoAndCopiesTheOthers) {
   EXPECT_TRUE(values[2].slot);
 }
 
+// A thread may still decode it.
+TEST_F(SlotsInPlace, AValueOutlivesItsReaderAndTheNextValues) {
+  ASSERT_TRUE(publish(1));
+  SlotValue value;
+  ASSERT_EQ(reader_->read(value), Found::value);
+  ASSERT_TRUE(publish(2));
+  SlotValue next;
+  ASSERT_EQ(reader_->read(next), Found::value);
+  reader_.reset();
+  writer_.reset();
+  EXPECT_THAT(value.bytes.first(before_array), Each(std::byte{1}));
+  EXPECT_THAT(items_of(value), Each(std::byte{1}));
+  EXPECT_THAT(next.bytes.last(behind_array), Each(std::byte{2}));
+  EXPECT_THAT(items_of(next), Each(std::byte{2}));
+}
+
 TEST_F(SlotsInPlace, SmallArraysAreCopied) {
   ASSERT_TRUE(publish(1, 60'000));
   SlotValue value;

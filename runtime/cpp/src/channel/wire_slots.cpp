@@ -134,19 +134,18 @@ bool SlotWriter::is_empty() const {
     Steps::begin(heads_[(number_ + 1) % sizes_.count], number_ + 1);
     return number_ + 1;
   }
+  const std::span<const Holds::value_type> holds(holds_);
   for (std::uint64_t number = number_ + 1; number < number_ + sizes_.count; ++number) {
     const std::size_t slot = number % sizes_.count;
-    const auto is_used_now = [&]() RR_REQUIRES(mutex_) { return is_used(slot); };
-    if (is_used_now() || !Steps::try_to_begin(heads_[slot], number, is_used_now)) continue;
+    const auto is_used = [&] {
+      return std::ranges::any_of(holds, [&](const auto& one) { return one->has(slot); });
+    };
+    if (is_used() || !Steps::try_to_begin(heads_[slot], number, is_used)) continue;
     without_slot_ = 0;
     return number;
   }
   if (++without_slot_ >= most_without_slot) refuse_greedy();
   return 0;
-}
-
-bool SlotWriter::is_used(std::size_t slot) const {
-  return std::ranges::any_of(holds_, [&](const auto& holds) { return holds->has(slot); });
 }
 
 void SlotWriter::refuse_greedy() {
@@ -264,6 +263,7 @@ SlotReader::Found SlotReader::read_number(std::uint64_t number, SlotValue& value
   if (before != Steps::State::whole) return found(before);
   value.displaced = {};
   value.slot = {};
+  value.gapped = {};
   // A reader that uses a slot without need keeps it from others.
   if (holds_ && head.run_count.load(std::memory_order_relaxed) != 0) value.slot = use(slot, number);
   if (value.slot) {
@@ -296,6 +296,25 @@ void SlotReader::copy(const std::byte* slot, const Contents& contents, SlotValue
   value.bytes = {bytes, static_cast<std::size_t>(contents.size)};
 }
 
+// Where the parts of a value are put that are not left in its slot, as far apart as there.
+class SlotReader::Gapped final : public Memory {
+ public:
+  explicit Gapped(std::size_t slot_size)
+      : size_(slot_size), bytes(platform::map_pages(slot_size)) {}
+
+ private:
+  ~Gapped() {
+    if (bytes != nullptr) platform::unmap_pages(bytes, size_, 0);
+  }
+  void destroy() noexcept override { delete this; }
+
+  const std::size_t size_;
+
+ public:
+  std::byte* const bytes;  ///< null where the system has none
+  std::array<DisplacedItems, Head::most_runs> displaced{};
+};
+
 // All but the items of large arrays, which stay in the slot. In their place is what was there
 // before, if anything: nobody looks at it.
 void SlotReader::copy_around(const std::byte* slot, const Contents& contents, SlotValue& value) {
@@ -312,6 +331,7 @@ void SlotReader::copy_around(const std::byte* slot, const Contents& contents, Sl
   value.owner = {};
   value.bytes = {to, static_cast<std::size_t>(contents.size)};
   value.displaced = std::span(gapped_->displaced).first(contents.run_count);
+  value.gapped = gapped_memory_;
 }
 
 SlotReader::Contents::Contents(const Head& head)
@@ -332,13 +352,6 @@ bool SlotReader::Contents::are_right(const SlotSizes& sizes) const {
     at = std::uint64_t{run.begin} + run.size;
   }
   return true;
-}
-
-SlotReader::Gapped::Gapped(std::size_t slot_size)
-    : size(slot_size), bytes(platform::map_pages(slot_size)) {}
-
-SlotReader::Gapped::~Gapped() {
-  if (bytes != nullptr) platform::unmap_pages(bytes, size, 0);
 }
 
 // A slot, for as long as an array in it is there.
@@ -364,7 +377,10 @@ class SlotReader::Use final : public Memory {
 
 // Empty when the value is to be copied.
 MemoryRef SlotReader::use(std::size_t slot, std::uint64_t number) {
-  if (!gapped_) gapped_ = std::make_unique<Gapped>(sizes_.slot);
+  if (!gapped_memory_.is_unique()) {
+    gapped_ = new Gapped(sizes_.slot);
+    gapped_memory_ = MemoryRef(gapped_);
+  }
   if (gapped_->bytes == nullptr) return {};
   auto used = std::make_unique<Use>(holds_, slot, memory_);
   if (!holds_->hold(slot, number)) return {};

@@ -75,11 +75,11 @@ class SlotWriter {
  private:
   using Words = Steps::Words;
   using Head = Steps::Head;
+  using Holds = std::vector<std::shared_ptr<const ServedHolds>>;
 
   SlotWriter(platform::SharedMemory memory, platform::Descriptor handle, const SlotSizes& sizes,
              std::uint64_t id);
   [[nodiscard]] std::uint64_t begin() RR_REQUIRES(mutex_);
-  [[nodiscard]] bool is_used(std::size_t slot) const RR_REQUIRES(mutex_);
   void refuse_greedy() RR_REQUIRES(mutex_);
   void put(std::span<const Piece> value, std::size_t size, std::uint64_t number);
   void ring();
@@ -94,17 +94,18 @@ class SlotWriter {
   mutable Mutex mutex_;
   std::uint64_t number_ RR_GUARDED_BY(mutex_) = 0;  // of the last value
   std::int64_t time_ RR_GUARDED_BY(mutex_) = 0;     // and its time
-  std::vector<std::shared_ptr<const ServedHolds>> holds_ RR_GUARDED_BY(mutex_);
+  Holds holds_ RR_GUARDED_BY(mutex_);
   unsigned without_slot_ RR_GUARDED_BY(mutex_) = 0;  // values in a row
 };
 
 /// A value that was read from a slot.
 struct SlotValue {
   std::span<const std::byte> bytes{};
-  MemoryRef owner{};  ///< of the bytes; empty: they stay until the reader reads again
-  Time published{};   ///< as its service says; never later than now
-  std::span<const DisplacedItems> displaced{};  ///< as the bytes; the items are in the slot
-  MemoryRef slot{};                             ///< keeps them there
+  MemoryRef owner{};                            ///< of the bytes, if arrays may be parts of them
+  Time published{};                             ///< as its service says; never later than now
+  std::span<const DisplacedItems> displaced{};  ///< what is still in the slot
+  MemoryRef slot{};                             ///< keeps it there
+  MemoryRef gapped{};                           ///< keeps the bytes around it
 
   static constexpr std::size_t small = 4096;
   std::array<std::byte, small> room;  // left uninitialized
@@ -159,17 +160,7 @@ class SlotReader {
     std::uint32_t run_count;
     std::array<SlotRun, Head::most_runs> runs;
   };
-  // Where the parts of a value are put that are not left in its slot, as far apart as there.
-  struct Gapped {
-    explicit Gapped(std::size_t slot_size);
-    ~Gapped();
-    Gapped(const Gapped&) = delete;
-    Gapped& operator=(const Gapped&) = delete;
-
-    const std::size_t size;
-    std::byte* const bytes;
-    std::array<DisplacedItems, Head::most_runs> displaced{};
-  };
+  class Gapped;
   class Use;
 
   SlotReader(platform::SharedMemory memory, const SlotSizes& sizes, std::uint64_t id);
@@ -186,7 +177,9 @@ class SlotReader {
   std::atomic<bool> is_interrupted_{false};
   std::uint64_t seen_ = 0;  // the number of the value that was read last
   std::shared_ptr<SlotHolds> holds_;
-  std::unique_ptr<Gapped> gapped_;
+  // For the parts of a value that are not left in its slot. Another one while a value has it.
+  MemoryRef gapped_memory_;
+  Gapped* gapped_ = nullptr;
 };
 
 }  // namespace rr::channel
