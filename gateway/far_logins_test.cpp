@@ -87,10 +87,10 @@ TEST_F(FarLogins, AClientMayBecomeAnotherUser) {
   const auto other = bob();
   EXPECT_EQ(code_of([&] { return other->get("speed"); }), ErrorCode::object_locked_error);
   client.authenticate("bob", password("builder"));
-  EXPECT_EQ(name_at_robot(client), "gateway");
-  // The session of the user before has ended, and its lock with it.
+  // The session of the user before ends, and its lock with it.
   EXPECT_TRUE(
       comes_true([&] { return code_of([&] { return other->get("speed"); }) == ErrorCode::none; }));
+  EXPECT_EQ(name_at_robot(client), "gateway");
   client.logout();
   EXPECT_EQ(code_of([&] { return client->get("speed"); }), ErrorCode::authentication_error);
   client.authenticate("alice", password("wonder"));

@@ -33,7 +33,10 @@ class Memory {
 
  protected:
   /// Whether what is kept may be changed.
-  enum class Use : std::uint8_t { read_write, read_only };
+  enum class Use : std::uint8_t {
+    read_write,  ///< by the holder of the only reference
+    read_only,   ///< by nobody
+  };
   /// Made with one reference, which a MemoryRef takes over.
   explicit Memory(Use use = Use::read_write) noexcept : is_read_only_(use == Use::read_only) {}
   ~Memory() = default;

@@ -146,11 +146,11 @@ class Decoder : public Latch {
     displaced_ = displaced;
     displaced_owner_ = std::move(owner);
   }
-  /// For the runtime: where the payload of an array is, and what keeps it: null for nothing.
+  /// For the runtime: where the payload of an array is.
   struct Located {
-    std::span<const std::byte> items;
-    const MemoryRef* owner;
-    bool is_displaced;  ///< another process may change it at any time
+    std::span<const std::byte> items;  ///< its bytes
+    const MemoryRef* owner;            ///< null: arrays have to be copied
+    bool is_displaced;                 ///< another process may change them at any time
   };
   /// For the runtime: as it says.
   [[nodiscard]] Located locate(std::span<const std::byte> payload) const {
