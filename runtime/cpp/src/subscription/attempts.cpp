@@ -2,7 +2,9 @@
 // How a subscription connects to its services, and what it does when that fails or ends.
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "rr/call.hpp"
 #include "rr/url.hpp"
@@ -30,11 +32,18 @@ void Services::begin_soon(const TargetPointer& target) {
   host_.core->reactor().post([self = shared_from_this(), target] { self->begin(target); });
 }
 
-// Those that had to wait because there were as many as may be.
+// Those that wait, by one thread: the first of them comes first.
 void Services::begin_waiting() {
-  for (const TargetPointer& target : targets_) {
-    if (target->phase == Target::Phase::waiting) begin_soon(target);
-  }
+  std::vector<TargetPointer> waiting;
+  std::ranges::copy_if(targets_, std::back_inserter(waiting), [](const TargetPointer& target) {
+    return target->phase == Target::Phase::waiting;
+  });
+  if (waiting.empty()) return;
+  host_.core->reactor().post([self = shared_from_this(), waiting = std::move(waiting)] {
+    for (const TargetPointer& target : waiting) {
+      if (!self->begin(target)) return;
+    }
+  });
 }
 
 bool Services::is_full() const {
@@ -45,7 +54,8 @@ bool Services::is_full() const {
   return static_cast<std::size_t>(count) >= filter_->max_connections();
 }
 
-void Services::begin(const TargetPointer& target) {
+// False when it has to wait, as there are as many as may be.
+bool Services::begin(const TargetPointer& target) {
   AttemptPointer attempt;
   try {
     auto made = std::make_shared<Attempt>();
@@ -53,11 +63,11 @@ void Services::begin(const TargetPointer& target) {
       const MutexLock lock(mutex_);
       const bool is_idle =
           target->phase == Target::Phase::resting || target->phase == Target::Phase::waiting;
-      if (is_closed_ || !is_idle) return;
+      if (is_closed_ || !is_idle) return true;
       host_.core->reactor().cancel(*target);
       if (is_full()) {
         target->phase = Target::Phase::waiting;
-        return;
+        return false;
       }
       target->phase = Target::Phase::attempting;
       target->attempt = attempt = std::move(made);
@@ -71,6 +81,7 @@ void Services::begin(const TargetPointer& target) {
   } catch (const std::exception& error) {  // no thread to be had
     fail(target, attempt, Error(ErrorCode::system_resource_error, error.what()));
   }
+  return true;
 }
 
 void Services::attempt(const TargetPointer& target, const AttemptPointer& attempt) {
@@ -255,7 +266,8 @@ void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, 
   {
     const MutexLock lock(mutex_);
     const bool is_this = attempt ? target->phase == Target::Phase::attempting
-                                 : target->phase == Target::Phase::resting;
+                                 : target->phase == Target::Phase::resting ||
+                                       target->phase == Target::Phase::waiting;
     if (is_closed_ || target->attempt != attempt || !is_this) return;
     ++target->failures;
     rest(*target, why);

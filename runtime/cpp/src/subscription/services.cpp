@@ -70,7 +70,7 @@ void Services::appear(const std::string& key, FoundService service, bool is_know
     target =
         std::make_shared<Target>(weak_from_this(), host_.core, key, std::move(service), is_known);
     targets_.push_back(target);
-    begin_soon(target);
+    begin_waiting();
   }
   batch.send();
   changed();

@@ -112,7 +112,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   // Attempts (attempts.cpp)
   void begin_soon(const TargetPointer& target) RR_REQUIRES(mutex_);
   void begin_waiting() RR_REQUIRES(mutex_);
-  void begin(const TargetPointer& target);
+  bool begin(const TargetPointer& target);
   void attempt(const TargetPointer& target, const AttemptPointer& attempt);
   struct Reached {
     std::shared_ptr<Session> session;

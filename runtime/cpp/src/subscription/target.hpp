@@ -50,7 +50,7 @@ class Target final : public channel::Timer, public std::enable_shared_from_this<
  public:
   enum class Phase : std::uint8_t {
     resting,     // until the timer says so
-    waiting,     // for another to end: there are as many as may be
+    waiting,     // for its turn, and for another to end where there are as many as may be
     attempting,  // the timer ends it
     connected,
     gone,
@@ -69,7 +69,7 @@ class Target final : public channel::Timer, public std::enable_shared_from_this<
   FoundService service;
   bool is_known;           // the attributes and the like
   bool is_fading = false;  // goes when its connection does
-  Phase phase = Phase::resting;
+  Phase phase = Phase::waiting;
   std::shared_ptr<Attempt> attempt;  // while attempting
   std::shared_ptr<const LiveClient> client;
   std::shared_ptr<const SessionEnd> end;  // of the client
