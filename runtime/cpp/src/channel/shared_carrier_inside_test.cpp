@@ -100,6 +100,43 @@ TEST_F(SharedCarrierTest, PassesMemoriesOfWiresWithBells) {
   EXPECT_TRUE(client_->has_taken_bells());
 }
 
+TEST_F(SharedCarrierTest, TheClientSaysWhichSlotsItUses) {
+  std::error_code error;
+  EXPECT_EQ(server_->draw_holds(), nullptr) << "the client does not know them";
+  server_->use_slots();
+  client_->use_slots();
+  EXPECT_EQ(client_->draw_holds(), nullptr);
+  const auto slots = SlotWriter::make(SlotSizes::for_value(100'000), 1, error);
+  const auto holds = server_->draw_holds();
+  ASSERT_NE(holds, nullptr);
+  EXPECT_EQ(server_->draw_holds()->place(), holds->place() + 1);
+  slots->add_holds(holds);
+  const std::vector<std::byte> items(100'000, std::byte{9});
+  const Piece piece{items.data(), items.size(), true};
+  ASSERT_TRUE(slots->publish({&piece, 1}, items.size(), 1));
+  ASSERT_TRUE(server_->pass_slots(*slots));
+  const auto reader = client_->take_slots(1, holds->place());
+  ASSERT_NE(reader, nullptr);
+  SlotValue value;
+  ASSERT_EQ(reader->read(value), SlotReader::Found::value);
+  EXPECT_EQ(holds->count(), 1U);
+  // The same place for another reader: what the first one uses says nothing any more.
+  ASSERT_TRUE(server_->pass_slots(*slots));
+  const auto next = client_->take_slots(1, holds->place());
+  ASSERT_NE(next, nullptr);
+  EXPECT_EQ(holds->count(), 0U);
+  SlotValue other;
+  ASSERT_EQ(next->read(other), SlotReader::Found::value);
+  value = {};
+  EXPECT_EQ(holds->count(), 1U);
+  ASSERT_TRUE(server_->pass_slots(*slots));
+  const auto without = client_->take_slots(1, HoldPlaces::count);
+  ASSERT_NE(without, nullptr);
+  SlotValue copied;
+  ASSERT_EQ(without->read(copied), SlotReader::Found::value);
+  EXPECT_TRUE(copied.displaced.empty()) << "there is no such place";
+}
+
 TEST_F(SharedCarrierTest, PassesNoMoreMemoriesThanAClientMayLeaveInItsSocket) {
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 1, error);

@@ -197,6 +197,9 @@ TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
   ASSERT_NE(slots, nullptr);
   EXPECT_TRUE(server_->pass_slots(*slots));
+  const auto drawn = server_->draw_holds();
+  ASSERT_NE(drawn, nullptr);
+  EXPECT_EQ(drawn->place(), 0U);
   const auto taken = client->take_slots(7);
   ASSERT_NE(taken, nullptr);
   EXPECT_EQ(taken->id(), 7U);
