@@ -73,6 +73,32 @@ class SlotsInPlace : public ::testing::Test {
   std::unique_ptr<SlotReader> reader_;
 };
 
+// The steps alone.
+TEST(UsedSlots, AreNotBegun) {
+  using Steps = SlotSteps<Synchronization>;
+  Steps::Words words;
+  Steps::Head head;
+  HoldWords<Synchronization> holds;
+  const auto is_used = [&] { return holds.are_used(1); };
+  Steps::begin(head, 5);
+  Steps::commit(words, head, 5);
+  holds.use(1, 5);
+  EXPECT_EQ(Steps::look_at_used(head, 5, 4), Steps::State::whole);
+  EXPECT_FALSE(Steps::try_to_begin(head, 9, is_used));
+  EXPECT_EQ(head.sequence, 10U) << "as it was";
+  holds.leave(1);
+  EXPECT_TRUE(Steps::try_to_begin(head, 9, is_used));
+  EXPECT_EQ(head.sequence, 17U);
+  EXPECT_EQ(Steps::look_at_used(head, 5, 4), Steps::State::later);
+}
+
+TEST(UsedSlots, RunsArePacked) {
+  const SlotRun run{.begin = 0x12345678, .size = 0x9ABCDEF0};
+  EXPECT_EQ(run.packed(), 0x12345678'9ABCDEF0U);
+  EXPECT_EQ(SlotRun::unpack(run.packed()).begin, run.begin);
+  EXPECT_EQ(SlotRun::unpack(run.packed()).size, run.size);
+}
+
 TEST_F(SlotsInPlace, TheItemsOfALargeArrayAreNotCopied) {
   ASSERT_TRUE(publish(7));
   SlotValue value;
@@ -87,6 +113,7 @@ TEST_F(SlotsInPlace, TheItemsOfALargeArrayAreNotCopied) {
   EXPECT_TRUE(value.slot);
   EXPECT_FALSE(value.slot.is_unique()) << "nobody may write to it";
   EXPECT_EQ(drawn_.front()->count(), 1U);
+  EXPECT_TRUE(drawn_.front()->has(1)) << "the first value is in slot 1";
   value.slot = {};
   EXPECT_EQ(drawn_.front()->count(), 0U);
 }

@@ -128,6 +128,8 @@ TEST(SlotSizes, HaveRoomForSomewhatLargerValues) {
   EXPECT_GE(picture.slot, 12'500'000U);
   EXPECT_EQ(picture.count, 5U);
   EXPECT_TRUE(picture.are_right());
+  EXPECT_TRUE(picture.are_large());
+  EXPECT_FALSE(SlotSizes::for_value(50'000).are_large());
   EXPECT_EQ(SlotSizes::for_value(SlotSizes::largest_slot).slot, SlotSizes::largest_slot);
   EXPECT_EQ(SlotSizes::for_value(SlotSizes::largest_slot + 1).slot, 0U);
   EXPECT_FALSE(SlotSizes::for_value(SlotSizes::largest_slot + 1).are_right());

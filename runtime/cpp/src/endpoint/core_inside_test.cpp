@@ -81,6 +81,7 @@ TEST(Connections, HaveNoSlotsByThemselves) {
   channel::Connection& connection = fake;
   EXPECT_FALSE(connection.shares_slots());
   EXPECT_EQ(connection.take_slots(1, std::nullopt), nullptr);
+  EXPECT_EQ(connection.draw_holds(), nullptr);
   std::error_code error;
   const auto slots = channel::SlotWriter::make(channel::SlotSizes::for_value(1), 1, error);
   if (!slots) GTEST_SKIP() << "this system has no shared memory";
