@@ -115,7 +115,8 @@ void use(const rr::VarStringMap& value) {
   for (const rr::Piece& piece : writer.pieces()) {
     odd += static_cast<std::size_t>(std::count(piece.data, piece.data + piece.size, std::byte{1}));
   }
-  promise(odd <= writer.size(), "what is there can be counted");
+  static volatile std::size_t kept = 0;  // so that the bytes are read
+  kept = odd;
 }
 
 }  // namespace

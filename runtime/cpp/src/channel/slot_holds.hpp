@@ -30,7 +30,7 @@ struct HoldWords {
   void use(std::size_t slot, std::uint64_t number) { numbers[slot].store(number); }
   /// By the reader: it has read what it will read there.
   void leave(std::size_t slot) { numbers[slot].store(0); }
-  /// By the service: behind its store to the slot's sequence.
+  /// By the service, after it has changed the slot's sequence.
   [[nodiscard]] bool are_used(std::size_t slot) const { return numbers[slot].load() != 0; }
 };
 
@@ -54,7 +54,7 @@ class ServedHolds {
 
   /// What the client knows them by.
   [[nodiscard]] std::uint32_t place() const { return place_; }
-  /// Whether the client uses a slot. Behind a store to the slot's sequence.
+  /// Whether the client uses a slot. To be asked after the slot's sequence has been changed.
   [[nodiscard]] bool has(std::size_t slot) const { return words_->are_used(slot); }
   /// How many it uses.
   [[nodiscard]] std::size_t count() const;
