@@ -13,6 +13,7 @@
 
 #include "rr/tap.hpp"
 #include "runtime/cpp/src/node/testing/guarded.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/src/node/testing/wire_slots_rig.hpp"
 
 namespace rr::testing {
