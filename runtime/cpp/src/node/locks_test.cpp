@@ -480,14 +480,21 @@ TEST(Monitors, EndWhenTheObjectIsReleasedOrTheServiceCloses) {
   Pair pair({}, {}, parent);
   auto client = pair.connect();
   auto other = pair.connect();
-  const auto child = client->get_by_name("a");
-  enter_monitor(*child);
-  auto waiting = std::async(std::launch::async, [&, stub = other->get_by_name("a")] {
-    return code_of([&] { enter_monitor(*stub); });
-  });
-  std::this_thread::sleep_for(50ms);
-  pair.service->release_path("counter.by_name[a]");
-  EXPECT_EQ(waiting.get(), ErrorCode::object_not_found);
+  // A client that asks only after the release gets the monitor of what is there then, and has to
+  // give it back.
+  ErrorCode code = ErrorCode::none;
+  for (int left = 100; left != 0 && code == ErrorCode::none; --left) {
+    enter_monitor(*client->get_by_name("a"));
+    auto waiting = std::async(std::launch::async, [stub = other->get_by_name("a")] {
+      const ErrorCode end = code_of([&] { enter_monitor(*stub); });
+      if (end == ErrorCode::none) exit_monitor(*stub);
+      return end;
+    });
+    std::this_thread::sleep_for(50ms);
+    pair.service->release_path("counter.by_name[a]");
+    code = waiting.get();
+  }
+  EXPECT_EQ(code, ErrorCode::object_not_found);
   EXPECT_EQ(parent->child->inside, 0);
   enter_monitor(*client->get_by_name("a"));
   pair.service->close();
