@@ -7,6 +7,7 @@
 
 #include "rr/subscription.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/src/node/testing/server.hpp"
 #include "runtime/cpp/src/node/testing/silent_peer.hpp"
 #include "runtime/cpp/src/subscription/filter.hpp"
@@ -169,17 +170,19 @@ TEST(ServiceFilters, LimitTheConnections) {
   const SilentPeer silent;
   Node node;
   auto options = with({.max_connections = 1});
-  options.connect_timeout = 3s;  // those that answer may need more than one
+  options.connect_timeout = slowness() * 3s;  // those that answer may need more than one
   auto subscription = node.subscribe_all({{silent.url()}, {first.url()}, {second.url()}}, options);
-  EXPECT_EQ(subscription.wait_default_client<CounterStub>(20s)->get_name(), "first");
+  EXPECT_EQ(subscription.wait_default_client<CounterStub>(60s)->get_name(), "first");
   EXPECT_THAT(subscription.connected_clients(), SizeIs(1));
   EXPECT_THAT(second.service()->clients(), IsEmpty());
   first.stop();
-  EXPECT_TRUE(eventually([&] {
+  const auto is_second = [&] {
     const auto client = subscription.try_default_client<CounterStub>();
     return client &&
            error_of([&] { EXPECT_EQ(client->get_name(), "second"); }).code() == ErrorCode::none;
-  }));
+  };
+  // The silent one has its turn first, and each attempt may take long.
+  EXPECT_TRUE(eventually(is_second) || eventually(is_second) || eventually(is_second));
 }
 
 // Attributes, without a service
