@@ -196,7 +196,7 @@ TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
   ASSERT_NE(slots, nullptr);
-  EXPECT_TRUE(server_->pass_slots(*slots));
+  EXPECT_TRUE(server_->pass_memory(slots->handle()));
   const auto drawn = server_->draw_holds();
   ASSERT_NE(drawn, nullptr);
   EXPECT_EQ(drawn->place(), 0U);
@@ -218,7 +218,7 @@ TEST_F(SharingTest, OfAPeerThatKnowsNoSlotsNothingChanges) {
   EXPECT_FALSE(server_->shares_slots());
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
-  EXPECT_FALSE(server_->pass_slots(*slots));
+  EXPECT_FALSE(server_->pass_memory(slots->handle()));
 }
 
 TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {

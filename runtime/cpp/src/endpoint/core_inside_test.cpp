@@ -85,7 +85,7 @@ TEST(Connections, HaveNoSlotsByThemselves) {
   std::error_code error;
   const auto slots = channel::SlotWriter::make(channel::SlotSizes::for_value(1), 1, error);
   if (!slots) GTEST_SKIP() << "this system has no shared memory";
-  EXPECT_FALSE(connection.pass_slots(*slots));
+  EXPECT_FALSE(connection.pass_memory(slots->handle()));
 }
 
 TEST_F(CoreTest, IsNamedAndHasAnId) {

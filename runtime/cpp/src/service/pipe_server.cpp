@@ -13,7 +13,7 @@
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/platform/thread_object.hpp"
-#include "runtime/cpp/src/service/pipes.hpp"
+#include "runtime/cpp/src/service/pipe_place.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 
 namespace rr {
@@ -90,9 +90,10 @@ void PipeServerBase::set_backlog_limit(std::size_t packets) const {
   if ((member_->access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only pipe");
   }
-  const auto [ends, limit] = place_->audience();
   Encoded packet(*member_, value);
-  for (const auto& end : *ends) {
+  const auto [told, limit, rung] = place_->begin_packet(packet);
+  service::PipePlace::tell_of_ring(rung);
+  for (const auto& end : *told) {
     if (limit != 0) {
       end->ask_for_acknowledgements(true);
       if (end->unacknowledged() > limit) {
