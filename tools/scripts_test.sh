@@ -87,10 +87,6 @@ if git --version >/dev/null 2>&1; then
   echo told >"$work/tree/docs/project/page.md"
   said=$(run_again)
   ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again for a page of measurements: $said"
-  rm "$work/tree/other"
-  echo mended >"$work/tree/some_test.cpp"
-  said=$(run_again)
-  ! grep -q '^good runs$' <<<"$said" || complain "what has passed runs again for a test that was mended: $said"
   [ "$(grep -c ' good ' "$work/tree/docs/project/long_check.txt")" = 1 ] || complain "a part is noted more than once"
   echo changed >"$work/tree/source"
   said=$(run_again)

@@ -173,8 +173,7 @@ end_parts() { [ $failed_parts = 0 ] || exit 1; }
 # For a run that was stopped and goes on, on this machine or another: where parts_are_noted says so, parts that have passed are
 # noted in docs/project/long_check.txt, each with the hash of the tree as it was, whether committed or not; part leaves out
 # what has passed on this very tree, and the table says when that was. What makes others possible always runs: packages,
-# configurations and builds. Pages that tell of measurements are no part of that tree, or noting a run would begin a new one;
-# nor are sources of tests: one that counted on a quick machine is mended, and runs again in the parts that it has failed in.
+# configurations and builds. Pages that tell of measurements are no part of that tree, or noting a run would begin a new one.
 parts_are_noted=
 parts_tree=
 noted_parts=docs/project/long_check.txt
@@ -182,7 +181,7 @@ tree_now() (
   export GIT_INDEX_FILE
   GIT_INDEX_FILE=$(mktemp -u)
   cd "$top"
-  git add --all -- . ':!docs/project' ':!docs/status.md' ':!*_test.cpp' ':!*_test.sh' 2>/dev/null && git write-tree
+  git add --all -- . ':!docs/project' ':!docs/status.md' 2>/dev/null && git write-tree
   rm -f "$GIT_INDEX_FILE"
 )
 note_parts() {
@@ -200,7 +199,7 @@ note_passed() {
   (
     flock 9
     {
-      say "# Parts of ./check --long that have passed: hash of the tree without docs/project, docs/status.md and tests, then the row."
+      say "# Parts of ./check --long that have passed: hash of the tree without docs/project and docs/status.md, then the row."
       sed "/^$parts_tree /!d" "$file" 2>/dev/null || true
       say "$parts_tree $2 at $(date '+%F %H:%M')"
     } >"$file.new"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <boost/asio/use_future.hpp>
 #include <chrono>
 #include <future>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "rr/call.hpp"
+#include "runtime/cpp/src/node/testing/async_counter.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::testing {
@@ -354,14 +356,10 @@ TEST(Calls, ASessionsCallsCanBeCancelledTogether) {
   auto first =
       std::async(std::launch::async, [&] { return error_of([&] { counter->slow(0); }).code(); });
   object->entered.get_future().wait();
-  auto second =
-      std::async(std::launch::async, [&] { return error_of([&] { counter->add(1, 2); }).code(); });
-  std::this_thread::sleep_for(30ms);
+  auto second = counter->async_add(1, 2, boost::asio::use_future);  // it has begun
   counter.cancel_calls();
   EXPECT_EQ(first.get(), ErrorCode::operation_cancelled);
-  // On a crowded machine it may have begun only now.
-  while (second.wait_for(100ms) != std::future_status::ready) counter.cancel_calls();
-  EXPECT_EQ(second.get(), ErrorCode::operation_cancelled);
+  EXPECT_EQ(code_of([&] { second.get(); }), ErrorCode::operation_cancelled);
   object->gate.set_value();
   EXPECT_EQ(counter->add(1, 2), 3);
 }
