@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A get, and values of a wire, over TCP, a local socket and shared memory, in turns in one run,
-// between two processes on the same processor and on different ones.
+// A get, values of a wire and packets of a pipe, over TCP, a local socket and shared memory, in
+// turns in one run, between two processes on the same processor and on different ones.
 //   local_bench [rounds] [calls of a round] [spin in microseconds]
 #include <sched.h>
 
@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "rr/node.hpp"
+#include "rr/pipes.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
 #include "rr/type.hpp"
@@ -33,6 +34,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using rr::testing::Child;
 
+// Of a packet of the pipe, in bytes.
+constexpr std::size_t packet_size = 200;
+
 extern const rr::Definition definition;
 extern const rr::ObjectType value_type;
 
@@ -40,11 +44,22 @@ constexpr rr::Parameter blob_parameters[] = {rr::parameter<std::uint32_t>("size"
 constexpr rr::Parameter publish_parameters[] = {rr::parameter<std::uint32_t>("size"),
                                                 rr::parameter<std::uint32_t>("count"),
                                                 rr::parameter<std::uint32_t>("pause")};
-enum Place : std::size_t { value_place, blob_place, publish_place, state_place };
+constexpr rr::Parameter send_parameters[] = {rr::parameter<std::uint32_t>("count"),
+                                             rr::parameter<std::uint32_t>("pause")};
+enum Place : std::size_t {
+  value_place,
+  blob_place,
+  publish_place,
+  state_place,
+  send_place,
+  packets_place
+};
 constexpr rr::Member members[] = {rr::property<double>("value", rr::readonly),
                                   rr::function<rr::Array<std::uint8_t>>("blob", blob_parameters),
                                   rr::function<double>("publish", publish_parameters),
-                                  rr::wire<rr::Array<std::uint8_t>>("state", rr::readonly)};
+                                  rr::wire<rr::Array<std::uint8_t>>("state", rr::readonly),
+                                  rr::function<double>("send", send_parameters),
+                                  rr::pipe<rr::Array<std::uint8_t>>("packets", rr::readonly)};
 
 class ValueStub : public virtual rr::Stub {
  public:
@@ -59,6 +74,11 @@ class ValueStub : public virtual rr::Stub {
     return rr_call<double>(members[publish_place], {}, size, count, pause);
   }
   rr::Wire<rr::Array<std::uint8_t>> state() { return {*this, members[state_place]}; }
+  // Sends so many packets with pauses in microseconds; the mean time of one, in nanoseconds.
+  double send(std::uint32_t count, std::uint32_t pause) {
+    return rr_call<double>(members[send_place], {}, count, pause);
+  }
+  rr::Pipe<rr::Array<std::uint8_t>> packets() { return {*this, members[packets_place]}; }
 };
 
 constexpr const rr::ObjectType* objects[] = {&value_type};
@@ -75,6 +95,8 @@ constinit const rr::Definition definition{
     "  function uint8[] blob(uint32 size)\n"
     "  function double publish(uint32 size, uint32 count, uint32 pause)\n"
     "  wire uint8[] state [readonly]\n"
+    "  function double send(uint32 count, uint32 pause)\n"
+    "  pipe uint8[] packets [readonly]\n"
     "end\n",
     {0, 10, 0, 0},
     {},
@@ -108,6 +130,12 @@ class Value final : public rr::Skeleton {
       request.read(size, count, pause);
       const double median = publish(size, count, std::chrono::microseconds(pause));
       request.answer(&median);
+    } else if (member == send_place) {
+      std::uint32_t count = 0;
+      std::uint32_t pause = 0;
+      request.read(count, pause);
+      const double mean = send(count, std::chrono::microseconds(pause));
+      request.answer(&mean);
     } else {
       std::uint32_t size = 0;
       request.read(size);
@@ -134,6 +162,21 @@ class Value final : public rr::Skeleton {
       std::this_thread::sleep_for(pause);
     }
     return at_share(times, 0.5);
+  }
+  // Each packet begins with the time of its sending.
+  double send(std::uint32_t count, std::chrono::microseconds pause) const {
+    const rr::PipeServer<rr::Array<std::uint8_t>> packets(*this, members[packets_place]);
+    Clock::duration time{0};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      rr::Array<std::uint8_t> packet(packet_size);
+      if (!packets.wait_sent(std::chrono::seconds(10))) break;
+      const Clock::time_point begin = Clock::now();
+      std::memcpy(packet.mutate().data(), &begin, sizeof begin);
+      packets.send(packet);
+      time += Clock::now() - begin;
+      if (pause.count() != 0) std::this_thread::sleep_for(pause);
+    }
+    return nanoseconds(time) / count;
   }
 
   rr::Array<std::uint8_t> blob_;
@@ -299,6 +342,71 @@ void compare_pictures(const std::string& folder, const std::vector<std::string>&
   }
 }
 
+// Ages of packets that functions get, what sending one costs, and how soon all readers have many.
+void compare_pipes(const std::string& folder, const std::vector<std::string>& urls, bool is_split,
+                   int rounds) {
+  constexpr std::uint32_t slow = 1000;
+  constexpr std::uint32_t quick = 50'000;
+  for (const int count : {1, 8}) {
+    double tcp = 0;
+    for (std::size_t place = 0; place < urls.size(); ++place) {
+      std::vector<Way> readers;
+      for (int i = 0; i < count; ++i) {
+        readers.push_back(way_of("reader", folder, urls[place], place == 2, 0));
+      }
+      std::mutex mutex;
+      std::vector<double> ages;
+      std::atomic<std::uint64_t> received{0};
+      std::vector<rr::PipeEndpoint<Bytes>> ends;
+      std::vector<rr::Subscription> subscriptions;
+      for (Way& reader : readers) {
+        ends.push_back((*reader.client)->packets().connect());
+        subscriptions.push_back(ends.back().on_packet([&](const Bytes& packet) {
+          if (received.fetch_add(1) % 64 != 0) return;
+          const double age = age_of(packet);
+          const std::lock_guard lock(mutex);
+          ages.push_back(age);
+        }));
+      }
+      const auto all = [&](std::uint32_t packets) {
+        return std::uint64_t{packets} * static_cast<std::uint64_t>(count);
+      };
+      const auto wait_for = [&](std::uint64_t packets) {
+        while (received != packets) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        received = 0;
+      };
+      ValueStub& client = **readers.front().client;
+      std::vector<double> sent;
+      std::vector<double> taken;
+      std::vector<double> slow_ages;
+      for (int round = 0; round < rounds; ++round) {
+        client.send(slow, 300);
+        wait_for(all(slow));
+        {
+          const std::lock_guard lock(mutex);
+          slow_ages.insert(slow_ages.end(), ages.begin(), ages.end());
+          ages.clear();
+        }
+        const Clock::time_point begin = Clock::now();
+        sent.push_back(client.send(quick, 0));
+        wait_for(all(quick));
+        taken.push_back(nanoseconds(Clock::now() - begin) / quick);
+        const std::lock_guard lock(mutex);
+        ages.clear();
+      }
+      const double age = at_share(slow_ages, 0.5);
+      if (place == 0) tcp = age;
+      constexpr std::array<const char*, 3> names{"tcp", "local", "shm"};
+      std::printf(
+          "%-5s %-7s packets to %d: age p50 %8.2f us  %5.2f of tcp  send %6.0f ns  all have one "
+          "in %6.0f ns\n",
+          is_split ? "split" : "same", names.at(place), count, age / 1000, age / tcp,
+          at_share(sent, 0.5), at_share(taken, 0.5));
+      std::fflush(stdout);
+    }
+  }
+}
+
 void compare(const std::string& folder, bool is_split, int rounds, int calls, int spin) {
   Child server({"serve", folder, is_split ? "1" : "0", std::to_string(spin)});
   const std::string ready = server.wait_for("ready");
@@ -330,6 +438,7 @@ void compare(const std::string& folder, bool is_split, int rounds, int calls, in
     std::fflush(stdout);
   }
   compare_wires(ways, is_split, rounds, std::min(calls, 1000));
+  compare_pipes(folder, {tcp_url, local, local}, is_split, rounds);
   compare_pictures(folder, {tcp_url, local, local}, is_split, rounds);
 }
 

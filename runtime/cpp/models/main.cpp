@@ -65,8 +65,9 @@ Options read(const std::vector<std::string_view>& arguments) {
 
 std::vector<Model> all_models() {
   std::vector<Model> all;
-  for (const auto& models : {polling_models(), caller_models(), gathering_models(), strand_models(),
-                             newest_models(), exchange_models(), ring_models(), slot_models()}) {
+  for (const auto& models :
+       {polling_models(), caller_models(), gathering_models(), strand_models(), newest_models(),
+        exchange_models(), ring_models(), slot_models(), pipe_ring_models()}) {
     all.insert(all.end(), models.begin(), models.end());
   }
   return all;

@@ -38,5 +38,6 @@ std::span<const Model> strand_models();
 std::span<const Model> exchange_models();
 std::span<const Model> ring_models();
 std::span<const Model> slot_models();
+std::span<const Model> pipe_ring_models();
 
 }  // namespace rr::models

@@ -68,9 +68,10 @@ enum class Priority : std::uint8_t {
   fixed,   ///< nothing, and nothing overtakes it or what waits before it
 };
 
+class PipeRingReader;
+struct PipeRingStart;
 class ServedHolds;
 class SlotReader;
-class SlotWriter;
 
 /// Carries messages to and from one other node. Any thread may send.
 ///
@@ -105,19 +106,24 @@ class Connection {
   /// Before the connection is used.
   void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
 
-  // Memories of wires that the service's side writes and the client's side reads.
+  // Memories of wires and pipes that the service's side writes and the client's side reads.
   /// Whether both sides pass such memories.
   [[nodiscard]] virtual bool shares_slots() const { return false; }
   /// By the service's side: gives one to the other side, which has it before what is sent
   /// afterwards. False when that is not possible; then it is to be told otherwise.
-  [[nodiscard]] virtual bool pass_slots(const SlotWriter& /*slots*/) { return false; }
+  [[nodiscard]] virtual bool pass_memory(const platform::Descriptor& /*handle*/) { return false; }
   /// By the client's side, from Receiver::take_answer(): takes one that was passed; null for none.
   /// `holds`: the place of the words that the service's side has drawn for its reader.
   virtual std::shared_ptr<SlotReader> take_slots(std::uint64_t /*id*/,
                                                  std::optional<std::uint32_t> /*holds*/) {
     return nullptr;
   }
-  /// By the service's side: words by which one reader says which slots it uses; null for none.
+  /// The same for the memory of a pipe.
+  virtual std::shared_ptr<PipeRingReader> take_ring(const PipeRingStart& /*start*/) {
+    return nullptr;
+  }
+  /// By the service's side: words by which one reader says which slots it uses, or how far it is in
+  /// a ring; null for none.
   virtual std::shared_ptr<ServedHolds> draw_holds() { return nullptr; }
 
   /// The threads that what the other side asks may take; null where nobody counts them, as for a

@@ -136,47 +136,56 @@ std::ptrdiff_t SharedCarrier::take_bells() {
 }
 
 // The system counts what a client leaves in its socket for the user of this process.
-bool SharedCarrier::pass_slots(const SlotWriter& slots) {
+bool SharedCarrier::pass_memory(const platform::Descriptor& handle) {
   constexpr std::array<std::byte, 1> bell{};
   if (!is_server_ || !has_slots_) return false;
   if (!platform::has_unreceived(socket_)) unreceived_ = 0;
-  if (unreceived_.fetch_add(1) >= PassedSlots::most) {
+  if (unreceived_.fetch_add(1) >= PassedMemories::most) {
     --unreceived_;
     return false;
   }
-  return platform::send_with_handle(socket_, bell, slots.handle()) == std::ptrdiff_t{bell.size()};
+  return platform::send_with_handle(socket_, bell, handle) == std::ptrdiff_t{bell.size()};
 }
 
 std::shared_ptr<ServedHolds> SharedCarrier::draw_holds() {
   return is_server_ && has_slots_ ? pool_.draw() : nullptr;
 }
 
-std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id,
-                                                      std::optional<std::uint32_t> holds) {
-  if (is_server_ || !has_slots_) return nullptr;
-  std::unique_ptr<SlotReader> slots = find_slots(id);
-  if (slots && holds && *holds < HoldPlaces::count) slots->use_holds(open_holds(*holds));
-  return slots;
-}
-
-// Arrays of the reader that had the words before may still be there.
-std::shared_ptr<SlotHolds> SharedCarrier::open_holds(std::uint32_t place) {
-  if (const auto before = holds_[place].lock()) before->detach();
-  const auto first = rings_.holds();
-  auto opened =
-      std::make_shared<SlotHolds>(std::shared_ptr<SlotHolds::Words>(first, first.get() + place));
-  holds_[place] = opened;
-  return opened;
-}
-
-std::unique_ptr<SlotReader> SharedCarrier::find_slots(std::uint64_t id) {
+template <class Take>
+auto SharedCarrier::find_passed(const Take& take) {
   for (int left = most_looks; left != 0; --left) {
-    if (auto slots = passed_.take(id)) return slots;
+    if (auto memory = take()) return memory;
     must_look_ = Look::none;
     look_at_socket(Look::until_end);
     if (must_look_ == Look::none) break;  // that was all
   }
-  return passed_.take(id);
+  return take();
+}
+
+// The reader that had the words before may still be there.
+template <class Place>
+std::shared_ptr<Place> SharedCarrier::open_place(std::uint64_t place) {
+  if (const auto before = places_[place].lock()) before->detach();
+  const auto first = rings_.holds();
+  auto opened =
+      std::make_shared<Place>(std::shared_ptr<SlotHolds::Words>(first, first.get() + place));
+  places_[place] = opened;
+  return opened;
+}
+
+std::unique_ptr<SlotReader> SharedCarrier::take_slots(std::uint64_t id,
+                                                      std::optional<std::uint32_t> holds) {
+  if (is_server_ || !has_slots_) return nullptr;
+  auto slots = find_passed([&] { return passed_.take_slots(id); });
+  if (slots && holds && *holds < HoldPlaces::count) slots->use_holds(open_place<SlotHolds>(*holds));
+  return slots;
+}
+
+std::unique_ptr<PipeRingReader> SharedCarrier::take_ring(const PipeRingStart& start) {
+  if (is_server_ || !has_slots_ || start.place >= HoldPlaces::count) return nullptr;
+  auto ring = find_passed([&] { return passed_.take_ring(start.id); });
+  if (!ring || !ring->begin(open_place<PipeCursor>(start.place), start)) return nullptr;
+  return ring;
 }
 
 bool SharedCarrier::rest() {

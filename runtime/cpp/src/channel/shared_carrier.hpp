@@ -14,14 +14,14 @@
 
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/carrier.hpp"
-#include "runtime/cpp/src/channel/passed_slots.hpp"
+#include "runtime/cpp/src/channel/passed_memories.hpp"
 #include "runtime/cpp/src/channel/shared_rings.hpp"
 
 namespace rr::channel {
 
 /// Carries the bytes of a connection through two rings in shared memory. Its local socket stays:
 /// the end of either side shows there, and its bytes are a bell for a reactor that watches it. What
-/// a bell's byte says is not looked at. Memories of wires come with such bytes.
+/// a bell's byte says is not looked at. Memories of wires and pipes come with such bytes.
 class SharedCarrier final : public Carrier {
  public:
   /// `spin`: how long a receive that blocks looks again and again before it sleeps, where the other
@@ -58,19 +58,21 @@ class SharedCarrier final : public Carrier {
   void wait(Time deadline);
   /// Any thread: whoever sleeps in a receive is to look at the socket.
   void interrupt();
-  /// Before it is used by several threads: memories of wires are passed, too.
+  /// Before it is used by several threads: memories of wires and pipes are passed, too.
   void use_slots() { has_slots_ = true; }
   /// Any thread.
   [[nodiscard]] bool has_slots() const { return has_slots_; }
-  /// By the server, any thread: gives the client a memory, which is there before all that is sent
-  /// afterwards. False when the socket does not take it, or about PassedSlots::most are in it that
-  /// the client has not received.
-  [[nodiscard]] bool pass_slots(const SlotWriter& slots);
+  /// By the server, any thread: gives the client a memory of a wire or pipe, which is there before
+  /// all that is sent afterwards. False when the socket does not take it, or about
+  /// PassedMemories::most are in it that the client has not received.
+  [[nodiscard]] bool pass_memory(const platform::Descriptor& handle);
   /// By the client, with the read lease: takes one that the server has passed; null for none, and
   /// for a server. `holds`: the place of the words by which its reader says what it uses.
   std::unique_ptr<SlotReader> take_slots(std::uint64_t id,
                                          std::optional<std::uint32_t> holds = std::nullopt);
-  /// By the server, any thread: words for one reader of slots; null when there are none left.
+  /// The same for the memory of a pipe.
+  std::unique_ptr<PipeRingReader> take_ring(const PipeRingStart& start);
+  /// By the server, any thread: words for one reader; null when there are none left.
   std::shared_ptr<ServedHolds> draw_holds();
 
   /// Any thread: the same for the other side, which may sleep where it does not see the socket's
@@ -85,8 +87,10 @@ class SharedCarrier final : public Carrier {
   void wait_for(Clock::duration time);
   bool spin();
   void ring() const;
-  std::unique_ptr<SlotReader> find_slots(std::uint64_t id);
-  std::shared_ptr<SlotHolds> open_holds(std::uint32_t place);
+  template <class Take>
+  auto find_passed(const Take& take);
+  template <class Place>
+  std::shared_ptr<Place> open_place(std::uint64_t place);
 
   const SharedRings rings_;
   HoldPool pool_{rings_.holds()};  // of a server
@@ -104,8 +108,8 @@ class SharedCarrier final : public Carrier {
 
   // With the read lease.
   bool has_ended_ = false;
-  PassedSlots passed_;
-  std::array<std::weak_ptr<SlotHolds>, HoldPlaces::count> holds_;  // of a client
+  PassedMemories passed_;
+  std::array<std::weak_ptr<HeldPlace>, HoldPlaces::count> places_;  // of a client
   bool has_taken_bells_ = false;
   bool is_watching_;
   unsigned vain_spins_ = 0;  // in a row, at most 8

@@ -77,20 +77,20 @@ TEST_F(SharedCarrierTest, PassesMemoriesOfWiresWithBells) {
   };
   const auto one = make(1);
   EXPECT_FALSE(server_->has_slots());
-  EXPECT_FALSE(server_->pass_slots(*one)) << "the client does not know them";
+  EXPECT_FALSE(server_->pass_memory(one->handle())) << "the client does not know them";
   server_->use_slots();
   client_->use_slots();
   EXPECT_TRUE(client_->has_slots());
-  EXPECT_FALSE(client_->pass_slots(*one));
-  EXPECT_TRUE(server_->pass_slots(*one));
+  EXPECT_FALSE(client_->pass_memory(one->handle()));
+  EXPECT_TRUE(server_->pass_memory(one->handle()));
   // More than one look takes; bells are among them.
   for (int i = 0; i < 40; ++i) {
     constexpr std::array<std::byte, 1> bell{};
     platform::send(server_socket_.get(), bell);
-    EXPECT_TRUE(server_->pass_slots(*one)) << i;
+    EXPECT_TRUE(server_->pass_memory(one->handle())) << i;
   }
   const auto two = make(2);
-  EXPECT_TRUE(server_->pass_slots(*two));
+  EXPECT_TRUE(server_->pass_memory(two->handle()));
   const auto taken = client_->take_slots(2);
   ASSERT_NE(taken, nullptr);
   EXPECT_EQ(taken->id(), 2U);
@@ -98,6 +98,34 @@ TEST_F(SharedCarrierTest, PassesMemoriesOfWiresWithBells) {
   EXPECT_EQ(client_->take_slots(3), nullptr);
   EXPECT_EQ(received(*client_), "nothing");
   EXPECT_TRUE(client_->has_taken_bells());
+}
+
+TEST_F(SharedCarrierTest, AReaderOfARingSaysHowFarItIs) {
+  std::error_code error;
+  server_->use_slots();
+  client_->use_slots();
+  const auto ring = PipeRingWriter::make(PipeRingSize::for_packet(100), 5, error);
+  ASSERT_NE(ring, nullptr);
+  const auto holds = server_->draw_holds();
+  ASSERT_NE(holds, nullptr);
+  ring->put({});
+  PipeRingStart start{.id = ring->id(),
+                      .position = ring->position(),
+                      .place = holds->place(),
+                      .turn = 9,
+                      .reader = ring->admit().value()};
+  EXPECT_EQ(client_->take_ring(start), nullptr) << "it was not passed";
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(server_->pass_memory(ring->handle()));
+  EXPECT_EQ(server_->take_ring(start), nullptr);
+  const auto reader = client_->take_ring(start);
+  ASSERT_NE(reader, nullptr);
+  EXPECT_EQ(PipeRingWriter::Steps::cursor(holds->words(), 9), PipeRecord::whole(0));
+  EXPECT_TRUE(reader->ask());
+  EXPECT_EQ(PipeRingWriter::Steps::asked(holds->words(), 9), 1U);
+  start.position = 4;
+  EXPECT_EQ(client_->take_ring(start), nullptr) << "no packet can begin there";
+  start = {.id = 5, .place = HoldPlaces::count};
+  EXPECT_EQ(client_->take_ring(start), nullptr) << "there is no such place";
 }
 
 TEST_F(SharedCarrierTest, TheClientSaysWhichSlotsItUses) {
@@ -114,14 +142,14 @@ TEST_F(SharedCarrierTest, TheClientSaysWhichSlotsItUses) {
   const std::vector<std::byte> items(100'000, std::byte{9});
   const Piece piece{items.data(), items.size(), true};
   ASSERT_TRUE(slots->publish({&piece, 1}, items.size(), 1));
-  ASSERT_TRUE(server_->pass_slots(*slots));
+  ASSERT_TRUE(server_->pass_memory(slots->handle()));
   const auto reader = client_->take_slots(1, holds->place());
   ASSERT_NE(reader, nullptr);
   SlotValue value;
   ASSERT_EQ(reader->read(value), SlotReader::Found::value);
   EXPECT_EQ(holds->count(), 1U);
   // The same place for another reader: what the first one uses says nothing any more.
-  ASSERT_TRUE(server_->pass_slots(*slots));
+  ASSERT_TRUE(server_->pass_memory(slots->handle()));
   const auto next = client_->take_slots(1, holds->place());
   ASSERT_NE(next, nullptr);
   EXPECT_EQ(holds->count(), 0U);
@@ -129,7 +157,7 @@ TEST_F(SharedCarrierTest, TheClientSaysWhichSlotsItUses) {
   ASSERT_EQ(next->read(other), SlotReader::Found::value);
   value = {};
   EXPECT_EQ(holds->count(), 1U);
-  ASSERT_TRUE(server_->pass_slots(*slots));
+  ASSERT_TRUE(server_->pass_memory(slots->handle()));
   const auto without = client_->take_slots(1, HoldPlaces::count);
   ASSERT_NE(without, nullptr);
   SlotValue copied;
@@ -142,12 +170,13 @@ TEST_F(SharedCarrierTest, PassesNoMoreMemoriesThanAClientMayLeaveInItsSocket) {
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 1, error);
   server_->use_slots();
   client_->use_slots();
-  for (std::size_t i = 0; i < PassedSlots::most; ++i) EXPECT_TRUE(server_->pass_slots(*slots)) << i;
-  EXPECT_FALSE(server_->pass_slots(*slots));
-  EXPECT_FALSE(server_->pass_slots(*slots));
+  for (std::size_t i = 0; i < PassedMemories::most; ++i)
+    EXPECT_TRUE(server_->pass_memory(slots->handle())) << i;
+  EXPECT_FALSE(server_->pass_memory(slots->handle()));
+  EXPECT_FALSE(server_->pass_memory(slots->handle()));
   while (client_->take_slots(1) != nullptr) {
   }
-  EXPECT_TRUE(server_->pass_slots(*slots)) << "all have been received";
+  EXPECT_TRUE(server_->pass_memory(slots->handle())) << "all have been received";
 }
 
 TEST_F(SharedCarrierTest, RingsOnceForAServerThatWatches) {

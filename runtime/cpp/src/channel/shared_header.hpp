@@ -15,6 +15,7 @@ namespace rr::channel {
 enum class SharedKind : std::uint32_t {
   rings = 1,
   slots = 2,
+  packets = 3,
 };
 
 /// What is at the beginning of each memory that nodes share, written once, before anybody else has
@@ -25,9 +26,9 @@ struct SharedHeader {
   SharedKind kind;
   std::uint32_t area_size;   ///< bytes of a ring, or of a slot
   std::uint32_t data_at;     ///< where the first one begins
-  std::uint32_t area_count;  ///< of slots; 0 for rings
+  std::uint32_t area_count;  ///< of slots; 1 for packets; 0 for rings
   std::uint32_t unused;
-  std::uint64_t id;  ///< of slots; 0 for rings
+  std::uint64_t id;  ///< of slots and packets; 0 for rings
 
   /// Where that is in all kinds.
   static constexpr std::size_t first_data = 0x1000;

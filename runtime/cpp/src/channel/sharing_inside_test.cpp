@@ -196,7 +196,7 @@ TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
   ASSERT_NE(slots, nullptr);
-  EXPECT_TRUE(server_->pass_slots(*slots));
+  EXPECT_TRUE(server_->pass_memory(slots->handle()));
   const auto drawn = server_->draw_holds();
   ASSERT_NE(drawn, nullptr);
   EXPECT_EQ(drawn->place(), 0U);
@@ -204,6 +204,14 @@ TEST_F(SharingTest, MemoriesOfWiresArePassedWhereBothWantThem) {
   ASSERT_NE(taken, nullptr);
   EXPECT_EQ(taken->id(), 7U);
   EXPECT_EQ(server_->take_slots(7, std::nullopt), nullptr);
+  const auto ring = PipeRingWriter::make(PipeRingSize::for_packet(100), 8, error);
+  ASSERT_NE(ring, nullptr);
+  EXPECT_TRUE(server_->pass_memory(ring->handle()));
+  const PipeRingStart start{.id = 8, .reader = ring->admit().value()};
+  EXPECT_EQ(server_->take_ring(start), nullptr);
+  const auto reader = client->take_ring(start);
+  ASSERT_NE(reader, nullptr);
+  EXPECT_EQ(reader->id(), 8U);
 }
 
 TEST_F(SharingTest, OfAPeerThatKnowsNoSlotsNothingChanges) {
@@ -218,7 +226,7 @@ TEST_F(SharingTest, OfAPeerThatKnowsNoSlotsNothingChanges) {
   EXPECT_FALSE(server_->shares_slots());
   std::error_code error;
   const auto slots = SlotWriter::make(SlotSizes::for_value(100), 7, error);
-  EXPECT_FALSE(server_->pass_slots(*slots));
+  EXPECT_FALSE(server_->pass_memory(slots->handle()));
 }
 
 TEST_F(SharingTest, AClientThatPassesMemoriesItselfIsNotHeard) {

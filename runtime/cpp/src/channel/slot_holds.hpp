@@ -11,7 +11,8 @@
 #include "runtime/cpp/src/channel/synchronization.hpp"
 
 /// How a reader of slots, which may not write to their memory, says which of them it uses: arrays
-/// in them are read in place (docs/reference/shared_memory.md).
+/// in them are read in place (docs/reference/shared_memory.md). Readers of a pipe's ring have such
+/// words, too (pipe_ring_steps.hpp).
 namespace rr::channel {
 
 /// Slots that a memory has at most.
@@ -58,6 +59,8 @@ class ServedHolds {
   [[nodiscard]] bool has(std::size_t slot) const { return words_->are_used(slot); }
   /// How many it uses.
   [[nodiscard]] std::size_t count() const;
+  /// What the client has written.
+  [[nodiscard]] const Words& words() const { return *words_; }
 
  private:
   const std::shared_ptr<const Words> words_;
@@ -83,8 +86,20 @@ class HoldPool {
       std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
-/// The words of one reader, as its client has them. Any thread.
-class SlotHolds {
+/// Words of a connection that its client writes to, until they are another reader's. Any thread.
+class HeldPlace {
+ public:
+  HeldPlace() = default;
+  HeldPlace(const HeldPlace&) = delete;
+  HeldPlace& operator=(const HeldPlace&) = delete;
+  virtual ~HeldPlace() = default;
+
+  /// The words are another reader's from now on.
+  virtual void detach() = 0;
+};
+
+/// The words of one reader of slots, as its client has them. Any thread.
+class SlotHolds final : public HeldPlace {
  public:
   using Words = HoldWords<Synchronization>;
   /// Slots that a reader uses at once. Whoever uses more takes them away from all others.
@@ -96,8 +111,7 @@ class SlotHolds {
   /// no more may be used.
   [[nodiscard]] bool hold(std::size_t slot, std::uint64_t number);
   void release(std::size_t slot);
-  /// The words are another reader's from now on.
-  void detach();
+  void detach() override;
 
  private:
   Mutex mutex_;

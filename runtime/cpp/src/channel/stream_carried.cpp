@@ -129,15 +129,20 @@ bool StreamConnection::shares_slots() const {
   return shared != nullptr && shared->has_slots();
 }
 
-bool StreamConnection::pass_slots(const SlotWriter& slots) {
+bool StreamConnection::pass_memory(const platform::Descriptor& handle) {
   SharedCarrier* const shared = layers_.shared();
-  return shared != nullptr && !is_closed() && shared->pass_slots(slots);
+  return shared != nullptr && !is_closed() && shared->pass_memory(handle);
 }
 
 std::shared_ptr<SlotReader> StreamConnection::take_slots(std::uint64_t id,
                                                          std::optional<std::uint32_t> holds) {
   SharedCarrier* const shared = layers_.shared();
   return shared == nullptr ? nullptr : shared->take_slots(id, holds);
+}
+
+std::shared_ptr<PipeRingReader> StreamConnection::take_ring(const PipeRingStart& start) {
+  SharedCarrier* const shared = layers_.shared();
+  return shared == nullptr ? nullptr : shared->take_ring(start);
 }
 
 std::shared_ptr<ServedHolds> StreamConnection::draw_holds() {

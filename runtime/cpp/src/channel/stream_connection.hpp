@@ -103,9 +103,10 @@ class StreamConnection final : public Connection,
   [[nodiscard]] bool has_sent(std::size_t bytes) const override;
   void reply(Writer& message, Priority priority) override;
   [[nodiscard]] bool shares_slots() const override;
-  [[nodiscard]] bool pass_slots(const SlotWriter& slots) override;
+  [[nodiscard]] bool pass_memory(const platform::Descriptor& handle) override;
   std::shared_ptr<SlotReader> take_slots(std::uint64_t id,
                                          std::optional<std::uint32_t> holds) override;
+  std::shared_ptr<PipeRingReader> take_ring(const PipeRingStart& start) override;
   std::shared_ptr<ServedHolds> draw_holds() override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;

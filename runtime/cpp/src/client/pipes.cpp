@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/client/pipes.hpp"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -9,8 +10,10 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/client/pipe_end.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/call_terms.hpp"
+#include "runtime/cpp/src/endpoint/ring_terms.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr::client {
@@ -28,23 +31,38 @@ constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 // The elements of a request to connect.
 class ConnectRequest {
  public:
-  explicit ConnectRequest(const Pipes::Wish& wish)
+  ConnectRequest(const Pipes::Wish& wish, const channel::Connection& connection)
       : index_(wish.options.index),
-        count_(wish.options.unreliable && (wish.member->access & unreliable) != 0 ? 2 : 1),
-        request_{EntryType::pipe_connect_req, wish.path, wish.member->name,
-                 std::span(parameters, count_), values_} {}
+        request_{EntryType::pipe_connect_req, wish.path, wish.member->name} {
+    add(parameter<std::int32_t>("index"), &index_);
+    if (wish.options.unreliable && (wish.member->access & unreliable) != 0) {
+      add(parameter<std::int32_t>("unreliable"), &is_unreliable_);
+    }
+    if (ClientPipeEnd::wish(connection, *wish.member) == endpoint::RingWish::ring) {
+      add({endpoint::ring_element, &type_of<std::uint32_t>}, &ring_);
+    }
+    request_.parameters = std::span(parameters_.data(), count_);
+    request_.values = values_.data();
+  }
   ConnectRequest(const ConnectRequest&) = delete;
   ConnectRequest& operator=(const ConnectRequest&) = delete;
   operator const Outgoing&() const { return request_; }  // NOLINT
 
  private:
-  static constexpr Parameter parameters[] = {parameter<std::int32_t>("index"),
-                                             parameter<std::int32_t>("unreliable")};
+  static constexpr std::size_t most = 3;
+
+  void add(const Parameter& parameter, const void* value) {
+    parameters_[count_] = parameter;
+    values_[count_++] = value;
+  }
+
   const std::int32_t index_;
   const std::int32_t is_unreliable_ = 1;
-  const std::size_t count_;
-  const void* const values_[2] = {&index_, &is_unreliable_};
-  const Outgoing request_;
+  const std::uint32_t ring_ = static_cast<std::uint32_t>(endpoint::RingWish::ring);
+  std::size_t count_ = 0;
+  std::array<Parameter, most> parameters_{};
+  std::array<const void*, most> values_{};
+  Outgoing request_;
 };
 
 // Of an answer that nobody cares about.
@@ -56,14 +74,6 @@ class Ignored final : public Completion {
 };
 
 }  // namespace
-
-struct Pipes::Used final : PipeEnd::State {
-  Used(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
-       Identity what, std::uint64_t notices)
-      : State(std::move(core), std::move(side), std::move(what)), notices_before(notices) {}
-
-  const std::uint64_t notices_before;  ///< that were read (Notices); none of them means it
-};
 
 // A request to connect that is open: packets that come meanwhile are kept.
 class Pipes::Connecting {
@@ -103,7 +113,7 @@ class Pipes::Opened final : public Completion {
 PipeEnd Pipes::connect(Wish wish, std::chrono::milliseconds timeout) {
   Connecting connecting(*this, std::move(wish));
   session_.call(
-      ConnectRequest(connecting.wish),
+      ConnectRequest(connecting.wish, connection()),
       [&](Decoder& decoder, const Message&, const Entry& entry) {
         connecting.read(decoder, entry);
       },
@@ -115,7 +125,7 @@ void Pipes::start_connect(Wish wish, std::chrono::milliseconds timeout,
                           std::unique_ptr<Completion> completion) {
   const auto connecting = std::make_shared<Connecting>(*this, std::move(wish));
   session_.start(
-      ConnectRequest(connecting->wish),
+      ConnectRequest(connecting->wish, connection()),
       [connecting](Decoder& decoder, const Message&, const Entry& entry) {
         connecting->read(decoder, entry);
       },
@@ -157,10 +167,11 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   const bool is_unreliable =
       wish.options.unreliable && (wish.member->access & unreliable) != 0 &&
       find_element(decoder, entry.elements, entry.element_count, "unreliable", element);
-  const auto end = std::make_shared<Used>(
+  const auto end = std::make_shared<ClientPipeEnd>(
       session_.core(), std::shared_ptr<endpoint::PipeSide>(session_.shared_from_this(), this),
       PipeEnd::State::Identity{wish.path, wish.member, wish.holding, index, is_unreliable, true},
       session_.notices().read());
+  end->take_answer(decoder, entry);
   bool has_room = true;
   End predecessor;
   {
@@ -197,7 +208,7 @@ Pipes::End Pipes::add(const End& end) {
 
 // Whether the end has been connected after the service has sent a notice.
 bool Pipes::is_overtaken(const End& end, std::uint64_t notice) {
-  return static_cast<const Used&>(*end).notices_before >= notice;
+  return static_cast<const ClientPipeEnd&>(*end).notices_before >= notice;
 }
 
 bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder) {
@@ -220,11 +231,16 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
 
 [[gnu::hot]] void Pipes::take_packets(const Message& message, const Entry& entry,
                                       const MemoryRef& owner) {
+  if (take_ring_notice(message, entry)) return;
   endpoint::PipeArrival arrival(message, entry, owner, *session_.types(), {});
+  End last;
+  std::vector<End> others;  // rarely, more than one has packets in an entry
   arrival.take(
       [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
         const MutexLock lock(mutex_);
         if (auto end = ends_.find(entry.service_path, entry.member, packet.index)) {
+          if (last && last != end) others.push_back(std::move(last));
+          last = end;
           return {std::move(end), true};
         }
         return {nullptr, keep_early(entry, packet, decoder)};
@@ -240,6 +256,24 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
                           count, arrival.metadata());
   }
   arrival.deliver();
+  if (!last || !connection().shares_slots()) return;
+  static_cast<ClientPipeEnd&>(*last).note_packet();
+  for (const End& end : others) static_cast<ClientPipeEnd&>(*end).note_packet();
+}
+
+// False when the entry has packets.
+bool Pipes::take_ring_notice(const Message& message, const Entry& entry) {
+  if (!connection().shares_slots()) return false;
+  Decoder decoder(message.version, &message.strings);
+  const auto notice = endpoint::find_ring_notice(decoder, entry);
+  if (!notice) return false;
+  End end;
+  {
+    const MutexLock lock(mutex_);
+    end = ends_.find(entry.service_path, entry.member, *notice);
+  }
+  if (end) static_cast<ClientPipeEnd&>(*end).take_notice();
+  return true;
 }
 
 void Pipes::take_acknowledgements(const Message& message, const Entry& entry) {
@@ -265,7 +299,13 @@ void Pipes::take_closed(const Message& message, const Entry& entry, std::uint64_
     if (!end || is_overtaken(end, notice)) return;
     ends_.remove(*end);
   }
-  end->finish();
+  end_now(*end);
+}
+
+// What is in a ring for it has been sent before it ended.
+void Pipes::end_now(PipeEnd::State& end) {
+  static_cast<ClientPipeEnd&>(end).take_rest();
+  end.finish();
 }
 
 void Pipes::release(std::string_view path, std::uint64_t notice) {
@@ -277,7 +317,7 @@ void Pipes::release(std::string_view path, std::uint64_t notice) {
       return is_overtaken(end, notice) && ends_.add(end);
     });
   }
-  for (const End& end : ended) end->finish();
+  for (const End& end : ended) end_now(*end);
 }
 
 void Pipes::end() {
@@ -286,10 +326,11 @@ void Pipes::end() {
     const MutexLock lock(mutex_);
     ended = ends_.take_all();
   }
-  for (const End& end : ended) end->finish();
+  for (const End& end : ended) end_now(*end);
 }
 
 channel::Connection& Pipes::connection() const { return session_.connection(); }
+std::shared_ptr<const TypeRegistry> Pipes::types() const { return session_.types(); }
 
 [[gnu::hot]] void Pipes::stream(Writer& writer, const EntryHeader& header,
                                 std::string_view metadata) {
@@ -302,6 +343,7 @@ void Pipes::close(PipeEnd::State& end, bool may_wait) {
     if (!ends_.remove(end)) return;
   }
   const auto keep = session_.shared_from_this();
+  static_cast<ClientPipeEnd&>(end).stop_reading();
   end.finish();
   const std::int32_t index = end.identity.index;
   const void* const values[] = {&index};

@@ -57,6 +57,8 @@ class Pipes final : public endpoint::PipeSide {
   void end();
 
   // From the ends
+  [[nodiscard]] Session& session() const { return session_; }
+  [[nodiscard]] std::shared_ptr<const TypeRegistry> types() const;
   [[nodiscard]] channel::Connection& connection() const override;
   void stream(Writer& writer, const EntryHeader& header, std::string_view metadata) override;
   void close(PipeEnd::State& end, bool may_wait) override;
@@ -64,7 +66,6 @@ class Pipes final : public endpoint::PipeSide {
  private:
   class Connecting;
   class Opened;
-  struct Used;
   using End = std::shared_ptr<PipeEnd::State>;
   using Key = std::pair<std::string, std::string>;
 
@@ -87,6 +88,8 @@ class Pipes final : public endpoint::PipeSide {
   void finish(const Wish& wish);
   End open(const Wish& wish, Decoder& decoder, const Entry& entry);
   End add(const End& end) RR_REQUIRES(mutex_);
+  bool take_ring_notice(const Message& message, const Entry& entry);
+  static void end_now(PipeEnd::State& end);
   static bool is_overtaken(const End& end, std::uint64_t notice);
   bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder)
       RR_REQUIRES(mutex_);

@@ -15,6 +15,7 @@
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/pipe_ring.hpp"
 #include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -81,11 +82,12 @@ TEST(Connections, HaveNoSlotsByThemselves) {
   channel::Connection& connection = fake;
   EXPECT_FALSE(connection.shares_slots());
   EXPECT_EQ(connection.take_slots(1, std::nullopt), nullptr);
+  EXPECT_EQ(connection.take_ring({.id = 1}), nullptr);
   EXPECT_EQ(connection.draw_holds(), nullptr);
   std::error_code error;
   const auto slots = channel::SlotWriter::make(channel::SlotSizes::for_value(1), 1, error);
   if (!slots) GTEST_SKIP() << "this system has no shared memory";
-  EXPECT_FALSE(connection.pass_slots(*slots));
+  EXPECT_FALSE(connection.pass_memory(slots->handle()));
 }
 
 TEST_F(CoreTest, IsNamedAndHasAnId) {

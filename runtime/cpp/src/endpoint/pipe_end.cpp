@@ -9,6 +9,7 @@
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
+#include "runtime/cpp/src/endpoint/ring_terms.hpp"
 
 namespace rr {
 namespace {
@@ -34,27 +35,36 @@ std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
   const MutexLock lock(sending_);
   endpoint::PipeSide* const side = side_while_sending();
   if (side == nullptr) throw_closed();
-  writer.reset(side->connection().version());
-  endpoint::write_packet(writer, index_text_, next_number_, asks, [&] { write_value(writer); });
-  if (writer.failed()) throw endpoint::latched(writer);
-  const std::string_view metadata =
-      identity.is_unreliable ? endpoint::unreliable_metadata : std::string_view();
+  if (has_ring_.load(std::memory_order_relaxed)) leave_ring(*side);
   if (asks) asked_.fetch_add(1, std::memory_order_relaxed);
   try {
-    side->stream(writer,
-                 {.type = EntryType::pipe_packet,
-                  .service_path = identity.path,
-                  .member = identity.member->name,
-                  .metadata = metadata},
-                 metadata);
+    send_numbered(writer, *side, asks, write_value);
   } catch (...) {
     if (asks) asked_.fetch_sub(1, std::memory_order_relaxed);
     throw;
   }
-  return next_number_++;
+  return next_number_ - 1;
+}
+
+template <class Write>
+void PipeEnd::State::send_numbered(Writer& writer, endpoint::PipeSide& side, bool asks,
+                                   const Write& write_value) {
+  writer.reset(side.connection().version());
+  endpoint::write_packet(writer, index_text_, next_number_, asks, [&] { write_value(writer); });
+  if (writer.failed()) throw endpoint::latched(writer);
+  const std::string_view metadata =
+      identity.is_unreliable ? endpoint::unreliable_metadata : std::string_view();
+  side.stream(writer,
+              {.type = EntryType::pipe_packet,
+               .service_path = identity.path,
+               .member = identity.member->name,
+               .metadata = metadata},
+              metadata);
+  ++next_number_;
 }
 
 [[gnu::hot]] std::uint32_t PipeEnd::State::send(const void* value) {
+  if (has_ring_.load(std::memory_order_relaxed)) is_sent_to_alone_ = true;
   return send_packet(
       [&](Writer& writer) { identity.member->type->write(writer, "packet", value); });
 }
@@ -64,6 +74,74 @@ std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
     const Written::Form& form = packet.in(writer.version());
     writer.prepend_array(form.bytes, form.owner);
   });
+}
+
+// Rings
+
+std::optional<std::uint32_t> PipeEnd::State::enter_ring(const std::function<bool()>& join) {
+  const MutexLock lock(sending_);
+  endpoint::PipeSide* const side = side_while_sending();
+  if (side == nullptr) return std::nullopt;
+  if (has_ring_) leave_ring(*side);
+  has_ring_ = join();
+  if (!has_ring_) return std::nullopt;
+  return next_number_;
+}
+
+void PipeEnd::State::send_missed() {
+  const MutexLock lock(sending_);
+  endpoint::PipeSide* const side = side_while_sending();
+  if (side != nullptr && has_ring_) leave_ring(*side);
+}
+
+// What is not sent is still there when this is called again.
+void PipeEnd::State::leave_ring(endpoint::PipeSide& side) {
+  if (!missed_) {
+    missed_ = take_missed();
+    next_number_ += static_cast<std::uint32_t>(missed_->read);
+  }
+  if (missed_->is_lost) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "packets of the pipe that the client has not read cannot be sent to it any more");
+  }
+  if (!missed_->is_told) send_notice(side);
+  missed_->is_told = true;
+  Writer& writer = channel::thread_writer();
+  while (!missed_->packets.empty()) {
+    const endpoint::MissedPackets::Packet& packet = missed_->packets.front();
+    send_numbered(writer, side, false, [&](Writer& to) {
+      to.prepend_array({packet.bytes, packet.size}, packet.owner);
+    });
+    missed_->packets.pop_front();
+  }
+  missed_.reset();
+  has_ring_ = false;
+}
+
+void PipeEnd::State::tell_of_ring() {
+  const auto side = this->side();
+  if (side) send_notice(*side);
+}
+
+void PipeEnd::State::send_notice(endpoint::PipeSide& side) const {
+  Writer& writer = channel::thread_writer();
+  writer.reset(side.connection().version());
+  endpoint::write_ring_notice(writer, identity.index);
+  side.stream(writer,
+              {.type = EntryType::pipe_packet,
+               .service_path = identity.path,
+               .member = identity.member->name},
+              {});
+}
+
+void PipeEnd::State::ask_for_acknowledgements(bool on) {
+  asks_.store(on, std::memory_order_relaxed);
+  if (!on || !has_ring_) return;
+  try {
+    send_missed();
+  } catch (const Error&) {
+    // It is tried again before the next packet.
+  }
 }
 
 // Which one it is the function may care about; for the count they are alike, and a side that

@@ -22,82 +22,18 @@
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 #include "runtime/cpp/src/endpoint/pipe_table.hpp"
-#include "runtime/cpp/src/endpoint/testing/fake_connection.hpp"
+#include "runtime/cpp/src/endpoint/testing/pipe_end_rig.hpp"
 
 namespace rr::endpoint {
 namespace {
 
 using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
-using rr::testing::FakeConnection;
+using rr::testing::numbers_member;
+using rr::testing::PipeEndTest;
 
-constexpr Member numbers = pipe<double>("numbers");
 constexpr Member from_service = pipe<double>("from_service", readonly);
 constexpr Member to_service = pipe<double>("to_service", writeonly);
-
-class FakeSide final : public PipeSide {
- public:
-  [[nodiscard]] channel::Connection& connection() const override { return fake; }
-  void stream(Writer& writer, const EntryHeader& header, std::string_view metadata) override {
-    const std::size_t end = 0;
-    writer.entry(header, 1, end);
-    writer.message({.metadata = metadata}, 1);
-    fake.stream(writer);
-  }
-  void close(PipeEnd::State& end, bool /*may_wait*/) override {
-    ++closed;
-    end.finish();
-  }
-
-  mutable FakeConnection fake;
-  int closed = 0;
-};
-
-class PipeEndTest : public ::testing::Test {
- protected:
-  using End = std::shared_ptr<PipeEnd::State>;
-
-  PipeEndTest() { core_->start(); }
-  // Not by the last work that is posted, on a thread of its own.
-  ~PipeEndTest() override { core_->stop(); }
-
-  End make(const Member& member = numbers, std::int32_t index = 4, bool is_client = true,
-           std::string path = "arm", bool is_unreliable = false) {
-    return std::make_shared<PipeEnd::State>(core_, side_,
-                                            PipeEnd::State::Identity{.path = std::move(path),
-                                                                     .member = &member,
-                                                                     .holding = member.holding,
-                                                                     .index = index,
-                                                                     .is_unreliable = is_unreliable,
-                                                                     .is_client = is_client});
-  }
-  static std::shared_ptr<void> packet(double value) { return std::make_shared<double>(value); }
-  static double value_of(const std::shared_ptr<const void>& packet) {
-    return *static_cast<const double*>(packet.get());
-  }
-  template <class Run>
-  static ErrorCode failure(const Run& run) {
-    try {
-      run();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return ErrorCode::none;
-  }
-
-  std::promise<std::string> log_;  // its first line
-  std::once_flag logged_;
-  const std::shared_ptr<Core> core_ = std::make_shared<Core>([this] {
-    NodeOptions options;
-    options.max_threads = 4;
-    options.metrics.is_enabled = true;
-    options.log = [this](LogLevel, std::string_view text) {
-      std::call_once(logged_, [&] { log_.set_value(std::string(text)); });
-    };
-    return options;
-  }());
-  const std::shared_ptr<FakeSide> side_ = std::make_shared<FakeSide>();
-};
 
 TEST_F(PipeEndTest, NumbersItsPackets) {
   const End end = make();
@@ -209,7 +145,7 @@ TEST_F(PipeEndTest, PacketsAreTakenInTheirOrder) {
 }
 
 TEST_F(PipeEndTest, AnUnreliableOneTakesPacketsAsTheyCome) {
-  const End end = make(numbers, 4, true, "arm", true);
+  const End end = make(numbers_member, 4, true, "arm", true);
   EXPECT_TRUE(end->accept(7, packet(7), 8));
   EXPECT_TRUE(end->accept(3, packet(3), 8));
   EXPECT_EQ(value_of(end->take()), 7);
@@ -351,12 +287,12 @@ TEST_F(PipeEndTest, AHandleLeadsToItsState) {
 
 TEST_F(PipeEndTest, ATableFindsEndsByPathMemberAndIndex) {
   PipeTable table;
-  const End first = make(numbers, 4);
-  const End second = make(numbers, 5);
-  const End below = make(numbers, 4, true, "arm.tool");
-  const End beside = make(numbers, 4, true, "arms");
+  const End first = make(numbers_member, 4);
+  const End second = make(numbers_member, 5);
+  const End below = make(numbers_member, 4, true, "arm.tool");
+  const End beside = make(numbers_member, 4, true, "arms");
   for (const End& end : {first, second, below, beside}) EXPECT_TRUE(table.add(end));
-  EXPECT_FALSE(table.add(make(numbers, 4)));
+  EXPECT_FALSE(table.add(make(numbers_member, 4)));
   EXPECT_EQ(table.size(), 4U);
   EXPECT_EQ(table.all().size(), 4U);
   EXPECT_EQ(table.find("arm", "numbers", 5), second);
@@ -376,12 +312,12 @@ TEST_F(PipeEndTest, ATableChoosesTheIndexOfANewEnd) {
   PipeTable table;
   EXPECT_EQ(table.choose("arm", "numbers", -1), 1);
   EXPECT_EQ(table.choose("arm", "numbers", 3), 3);
-  table.add(make(numbers, 3));
-  table.add(make(numbers, 4));
+  table.add(make(numbers_member, 3));
+  table.add(make(numbers_member, 4));
   EXPECT_EQ(table.choose("arm", "numbers", 3), 5);
   EXPECT_EQ(table.choose("arm", "numbers", 2), 5) << "behind the last one";
   EXPECT_EQ(table.choose("arm", "numbers", 9), 9);
-  table.add(make(numbers, std::numeric_limits<std::int32_t>::max()));
+  table.add(make(numbers_member, std::numeric_limits<std::int32_t>::max()));
   EXPECT_EQ(table.choose("arm", "numbers", 3), std::nullopt);
 }
 
@@ -414,7 +350,7 @@ TEST_F(PipeEndTest, PacketsThatArriveAreTakenAcknowledgedAndDelivered) {
   const TypeRegistry types;
   PipeArrival arrival(arrived.message, arrived.entry, {}, types, {});
   EXPECT_FALSE(arrival.has_acknowledgements());
-  const End end = make(numbers, 4);
+  const End end = make(numbers_member, 4);
   std::vector<double> got;
   const Subscription subscription =
       end->on_received([&](const std::shared_ptr<void>& value) { got.push_back(value_of(value)); });
@@ -453,7 +389,7 @@ TEST_F(PipeEndTest, AnEndWhoseQueueIsFullIsClosedWhenAllIsDelivered) {
   const ArrivedMessage arrived({{"4", 1}, {"4", 2}});
   const TypeRegistry types;
   PipeArrival arrival(arrived.message, arrived.entry, {}, types, {});
-  const End end = make(numbers, 4, true, "arm", true);
+  const End end = make(numbers_member, 4, true, "arm", true);
   end->set_queue_limit(1, WhenFull::close, 1'000'000);
   arrival.take([&](const PipePacket&, Decoder&) { return PipeArrival::Taken{end, true}; });
   EXPECT_EQ(arrival.metadata(), unreliable_metadata);

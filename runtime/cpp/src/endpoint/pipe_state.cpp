@@ -84,6 +84,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
       access_(identity.member->access),
       threads_(side ? side->connection().threads() : nullptr),
       side_(std::move(side)),
+      has_numbers_(!identity.is_unreliable),
       packets_(side_->connection().account()) {}
 
 [[gnu::hot]] bool PipeEnd::State::may_receive() const {
@@ -98,12 +99,26 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
     const MutexLock lock(mutex_);
     if (is_closed_) return true;
     is_awaited = waiting_ != 0;
-    has_room = identity.is_unreliable
-                   ? packets_.add(std::move(value), size, memory)
-                   : packets_.add_numbered(number, std::move(value), size, memory);
+    has_room = has_numbers_ ? packets_.add_numbered(number, std::move(value), size, memory)
+                            : packets_.add(std::move(value), size, memory);
   }
   if (is_awaited) arrived_.notify_all();  // a packet is there for all until one takes it
   return has_room;
+}
+
+void PipeEnd::State::use_numbers() {
+  const MutexLock lock(mutex_);
+  has_numbers_ = true;
+}
+
+bool PipeEnd::State::has_come_up_to(std::uint32_t number) const {
+  const MutexLock lock(mutex_);
+  return static_cast<std::int32_t>(packets_.expected() - number) >= 0;
+}
+
+bool PipeEnd::State::is_listening() const {
+  const MutexLock lock(mutex_);
+  return waiting_ != 0 || receiver_ != nullptr || !waitings_.empty();
 }
 
 [[gnu::hot]] void PipeEnd::State::deliver() {
@@ -176,26 +191,30 @@ void PipeEnd::State::deliver_soon() {
 }
 
 std::shared_ptr<void> PipeEnd::State::take() {
+  look();
   const MutexLock lock(mutex_);
   return packets_.empty() ? nullptr : packets_.pop();
 }
 
-std::shared_ptr<const void> PipeEnd::State::peek() const {
+std::shared_ptr<const void> PipeEnd::State::peek() {
+  look();
   const MutexLock lock(mutex_);
   return packets_.empty() ? nullptr : packets_.front();
 }
 
 bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
+  look();
   MutexLock lock(mutex_);
+  ++waiting_;
   if (packets_.empty() && !is_closed_) {
     const auto side = side_;
     lock.unlock();
+    listen();
     side->connection().expect();  // no caller will read it
     channel::Reactor::about_to_wait();
     lock.lock();
   }
-  ++waiting_;
   while (packets_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
     channel::wait_until(arrived_, mutex_, deadline);
   }
@@ -203,7 +222,8 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   return !packets_.empty();
 }
 
-std::size_t PipeEnd::State::available() const {
+std::size_t PipeEnd::State::available() {
+  look();
   const MutexLock lock(mutex_);
   return packets_.size();
 }
@@ -230,7 +250,10 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
     side = side_;
   }
   if (has_more) deliver_soon();
-  if (side) side->connection().expect();
+  if (side) {
+    listen();
+    side->connection().expect();
+  }
   return Subscription(std::move(receiver));
 }
 
@@ -254,7 +277,10 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
   }
   if (has_ended) fail_receive(waiting);
   if (is_due) deliver_soon();
-  if (side) side->connection().expect();
+  if (side) {
+    listen();
+    side->connection().expect();
+  }
 }
 
 void PipeEnd::State::end_receive(Waiting& waiting, ErrorCode code) {

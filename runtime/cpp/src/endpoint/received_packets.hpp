@@ -40,6 +40,8 @@ class ReceivedPackets {
   [[nodiscard]] bool add_numbered(std::uint32_t number, std::shared_ptr<void> value,
                                   std::size_t size, std::size_t memory);
 
+  /// The number of the packet that is to come next.
+  [[nodiscard]] std::uint32_t expected() const { return expected_; }
   [[nodiscard]] bool empty() const { return queue_.empty(); }
   /// Packets of the queue.
   [[nodiscard]] std::size_t size() const { return queue_.size(); }

@@ -36,6 +36,7 @@ TEST_F(ReceivedPacketsTest, AreTakenInTheOrderOfTheirNumbers) {
   EXPECT_TRUE(add_numbered(1));
   EXPECT_TRUE(add_numbered(4));
   EXPECT_EQ(packets_.size(), 2U);
+  EXPECT_EQ(packets_.expected(), 3U);
   EXPECT_EQ(value_of(packets_.front()), 1);
   EXPECT_EQ(take_all(), 12);
   EXPECT_TRUE(add_numbered(3));

@@ -140,6 +140,7 @@ void ServerEndpoint::renew_rights(ServiceHost& host) {
   end_what_is_not_allowed(host, false);
   // Whoever has left before may still read what was for all.
   wires_.renew_slots();
+  pipes_.renew_rings();
 }
 
 // Behind every change of what the session may do: what is open, and would be refused now, ends; all

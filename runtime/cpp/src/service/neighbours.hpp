@@ -22,4 +22,12 @@ std::shared_ptr<const std::vector<End>> with_end(const std::vector<End>& ends, c
   return result;
 }
 
+/// The list without an end.
+template <class End, class One>
+std::shared_ptr<const std::vector<End>> without_end(const std::vector<End>& ends, const One& end) {
+  auto result = std::make_shared<std::vector<End>>(ends);
+  std::erase_if(*result, [&](const End& other) { return other.get() == &end; });
+  return result;
+}
+
 }  // namespace rr::service

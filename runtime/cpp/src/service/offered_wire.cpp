@@ -34,13 +34,6 @@ bool has_end(const OfferedWire::Ends& ends, const ServedWireEnd& end) {
                      [&](const OfferedWire::End& other) { return other.get() == &end; });
 }
 
-std::shared_ptr<const OfferedWire::Ends> without_end(const OfferedWire::Ends& ends,
-                                                     const ServedWireEnd& end) {
-  auto result = std::make_shared<OfferedWire::Ends>(ends);
-  std::erase_if(*result, [&](const OfferedWire::End& other) { return other.get() == &end; });
-  return result;
-}
-
 // The elements of one packet, in each message version that is asked for. Not in the thread's
 // writer, which the messages are put together in.
 class Packet {
@@ -182,7 +175,7 @@ endpoint::SlotTerms OfferedWire::use_slots(const End& end, bool is_woken) {
     Writer& elements = packet.finish(MessageVersion::v4, endpoint::as_time_spec(last.time));
     memory.publish(elements.pieces(), elements.size(), last.time);
   }
-  if (end->pass_slots(memory)) return reading.terms;
+  if (end->pass_memory(memory)) return reading.terms;
   use_messages(end);
   return {};
 }

@@ -13,7 +13,7 @@
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/platform/thread_object.hpp"
-#include "runtime/cpp/src/service/pipes.hpp"
+#include "runtime/cpp/src/service/pipe_place.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 
 namespace rr {
@@ -81,7 +81,9 @@ void PipeServerBase::set_backlog_limit(std::size_t packets) const {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(*deadline - channel::Clock::now());
     const auto wait = std::max(left, std::chrono::milliseconds(0));
-    is_sent = (end->wait_sent(wait, bytes) || !end->is_open()) && is_sent;
+    // It gives up before its time only when the end or its connection closes.
+    const bool is_over = end->wait_sent(wait, bytes) || channel::Clock::now() < *deadline;
+    is_sent = is_over && is_sent;
   }
   return is_sent;
 }
@@ -90,9 +92,10 @@ void PipeServerBase::set_backlog_limit(std::size_t packets) const {
   if ((member_->access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only pipe");
   }
-  const auto [ends, limit] = place_->audience();
   Encoded packet(*member_, value);
-  for (const auto& end : *ends) {
+  const auto [told, limit, rung] = place_->begin_packet(packet);
+  service::PipePlace::tell_of_ring(rung);
+  for (const auto& end : *told) {
     if (limit != 0) {
       end->ask_for_acknowledgements(true);
       if (end->unacknowledged() > limit) {

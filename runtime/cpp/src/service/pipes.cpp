@@ -7,9 +7,9 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
+#include "runtime/cpp/src/endpoint/ring_terms.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
-#include "runtime/cpp/src/service/neighbours.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
@@ -23,44 +23,12 @@ constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 
 }  // namespace
 
-void PipePlace::set_connected(Function<void(PipeEnd)> function) {
-  const MutexLock lock(mutex_);
-  std::swap(connected_, function);  // what was there before ends behind the lock
-}
-
-Function<void(PipeEnd)> PipePlace::connected() const {
-  const MutexLock lock(mutex_);
-  return connected_;
-}
-
-void PipePlace::set_backlog_limit(std::size_t packets) {
-  const MutexLock lock(mutex_);
-  audience_.backlog_limit = packets;
-}
-
-void PipePlace::add(const End& end) {
-  const MutexLock lock(mutex_);
-  audience_.ends =
-      with_end(*audience_.ends, end, [](const End& one) { return one->identity.node; });
-}
-
-void PipePlace::remove(const PipeEnd::State& end) {
-  std::shared_ptr<const Ends> before;  // ends behind the lock
-  const MutexLock lock(mutex_);
-  auto ends = std::make_shared<Ends>(*audience_.ends);
-  std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
-  before = std::exchange(audience_.ends, std::move(ends));
-}
-
-PipePlace::Audience PipePlace::audience() const {
-  const MutexLock lock(mutex_);
-  return audience_;
-}
-
 struct Pipes::Served final : PipeEnd::State {
   Served(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
          Identity what, std::shared_ptr<PipePlace> where)
       : State(std::move(core), std::move(side), std::move(what)), place(std::move(where)) {}
+
+  [[nodiscard]] endpoint::MissedPackets take_missed() override { return place->take_missed(*this); }
 
   const std::shared_ptr<PipePlace> place;
   channel::Charge charge;  // for the end itself
@@ -104,6 +72,7 @@ Pipes::End Pipes::open(const Question& question, const ServedObject& object, con
 void Pipes::connect(const Question& question) {
   const auto object = endpoint_.find_object(question.entry.service_path);
   const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
+  if (answer_ring_again(question, *object, member)) return;
   endpoint_.ask_keeper_to_connect(question, member);
   const End end = open(question, *object, member);
   try {
@@ -120,19 +89,101 @@ void Pipes::connect(const Question& question) {
   if (!end->is_open()) {
     throw Error(ErrorCode::invalid_operation, "the service has closed this endpoint");
   }
+  channel::PipeRingStart ring;
+  if (wants_ring(question, endpoint::ring_element)) ring = join_ring(end);
   Writer& writer = endpoint_.begin_answer(question);
+  std::uint32_t count = 1;
+  if (ring.id != 0) {
+    endpoint::write_ring(writer, ring);
+    ++count;
+  }
   if (end->identity.is_unreliable) {
     const std::int32_t is_unreliable = 1;
     type_of<std::int32_t>.write(writer, "unreliable", &is_unreliable);
+    ++count;
   }
   type_of<std::int32_t>.write(writer, "index", &end->identity.index);
-  endpoint_.answer_elements(question, writer, end->identity.is_unreliable ? 2 : 1);
+  endpoint_.answer_elements(question, writer, count);
   {
     const MutexLock lock(mutex_);
     end->is_announced = true;
     if (!end->is_closed_unannounced) return;
   }
   send_closed(*end);
+}
+
+// Rings
+
+// Whether the client of a connection with shared memory asks for a ring.
+bool Pipes::wants_ring(const Question& question, std::string_view element) const {
+  if (!connection().shares_slots()) return false;
+  Decoder decoder = question.decoder();
+  return endpoint::find_ring_wish(decoder, question.entry, element) == endpoint::RingWish::ring;
+}
+
+// False when the request is not one about the ring of an endpoint that is connected.
+bool Pipes::answer_ring_again(const Question& question, const ServedObject& object,
+                              const Member& member) {
+  if (!connection().shares_slots()) return false;
+  Decoder decoder = question.decoder();
+  const auto wish = endpoint::find_ring_wish(decoder, question.entry, endpoint::ring_again_element);
+  if (!wish) return false;
+  std::int32_t index = 0;
+  endpoint::read_value(decoder, question.entry, "index", type_of<std::int32_t>, &index);
+  End end;
+  {
+    const MutexLock lock(mutex_);
+    end = std::static_pointer_cast<Served>(ends_.find(object.path, member.name, index));
+  }
+  if (!end) throw Error(ErrorCode::invalid_argument, "Invalid pipe");
+  end->place->leave_ring(end);
+  channel::PipeRingStart ring;
+  if (*wish == endpoint::RingWish::ring) ring = join_ring(end);
+  if (ring.id == 0) {
+    endpoint_.answer_empty(question);
+    return true;
+  }
+  Writer& writer = endpoint_.begin_answer(question);
+  endpoint::write_ring(writer, ring);
+  endpoint_.answer_elements(question, writer, 1);
+  return true;
+}
+
+// Packets that only this client gets, or that are acknowledged, are not for a ring.
+bool Pipes::may_join_ring(const Served& end) const {
+  const Member& member = *end.identity.member;
+  return (member.access & writeonly) == 0 && !end.is_sent_to_alone() &&
+         !end.asks_for_acknowledgements() && connection().version() == MessageVersion::v4 &&
+         endpoint_.access().may_send(EntryType::pipe_packet, end.identity.path, member.name);
+}
+
+// Its `id` is 0 when there is no ring for the end.
+channel::PipeRingStart Pipes::join_ring(const End& end) {
+  channel::PipeRingStart start;
+  if (!may_join_ring(*end)) return {};
+  auto holds = connection().draw_holds();
+  if (!holds) return {};
+  std::shared_ptr<channel::PipeRingWriter> ring;
+  const auto number = end->enter_ring([&] {
+    ring = end->place->join_ring({end, !endpoint_.access().is_open_to_all(), std::move(holds),
+                                  endpoint_.core()->slot_budget(), endpoint_.wires().slot_budget()},
+                                 start);
+    return ring != nullptr;
+  });
+  if (!number) return {};
+  start.number = *number;
+  if (connection().pass_memory(ring->handle())) return start;
+  end->place->leave_ring(end);
+  return {};
+}
+
+void Pipes::renew_rings() {
+  std::vector<endpoint::PipeTable::End> all;
+  {
+    const MutexLock lock(mutex_);
+    all = ends_.all();
+  }
+  for (const auto& end : all) static_cast<Served&>(*end).place->renew_ring();
 }
 
 void Pipes::disconnect(const Question& question) {
@@ -148,7 +199,7 @@ void Pipes::disconnect(const Question& question) {
     if (!end) throw Error(ErrorCode::invalid_argument, "Invalid pipe");
     ends_.remove(*end);
   }
-  finish(static_cast<Served&>(*end));
+  finish(std::static_pointer_cast<Served>(end), false);
   endpoint_.answer_empty(question);
 }
 
@@ -189,9 +240,9 @@ void Pipes::take_acknowledgements(const Question& question) {
 }
 
 // Of an end that is not in the table any more.
-void Pipes::finish(Served& end) {
-  end.place->remove(end);
-  end.finish();
+void Pipes::finish(const End& end, bool is_told) {
+  end->place->remove(end, is_told);
+  end->finish();
 }
 
 std::size_t Pipes::end_if(const Choice& is_over) {
@@ -218,7 +269,7 @@ void Pipes::release(std::string_view path) {
       served.is_closed_unannounced = !served.is_announced;
     }
   }
-  for (const auto& end : ended) finish(static_cast<Served&>(*end));
+  for (const auto& end : ended) finish(std::static_pointer_cast<Served>(end), true);
 }
 
 void Pipes::end() {
@@ -227,7 +278,7 @@ void Pipes::end() {
     const MutexLock lock(mutex_);
     ended = ends_.take_all();
   }
-  for (const auto& end : ended) finish(static_cast<Served&>(*end));
+  for (const auto& end : ended) finish(std::static_pointer_cast<Served>(end), false);
 }
 
 channel::Connection& Pipes::connection() const { return endpoint_.connection(); }
@@ -251,7 +302,7 @@ void Pipes::close(PipeEnd::State& state, bool /*may_wait*/) {
     is_announced = end.is_announced;
     end.is_closed_unannounced = !is_announced;
   }
-  finish(end);
+  finish(std::static_pointer_cast<Served>(keep), true);
   if (is_announced) send_closed(end);
 }
 

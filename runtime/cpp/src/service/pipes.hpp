@@ -6,45 +6,18 @@
 #include <functional>
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 #include "runtime/cpp/src/endpoint/pipe_table.hpp"
+#include "runtime/cpp/src/service/pipe_place.hpp"
 
 namespace rr::service {
 
 struct Question;
 struct ServedObject;
 class ServerEndpoint;
-
-/// One pipe of an object: what is set up for it, and its endpoints of all clients.
-class PipePlace {
- public:
-  using End = std::shared_ptr<PipeEnd::State>;
-  using Ends = std::vector<End>;
-
-  void set_connected(Function<void(PipeEnd)> function);
-  [[nodiscard]] Function<void(PipeEnd)> connected() const;
-  void set_backlog_limit(std::size_t packets);
-
-  void add(const End& end);
-  void remove(const PipeEnd::State& end);
-  [[nodiscard]] std::shared_ptr<const Ends> ends() const { return audience().ends; }
-  /// Who gets a packet that goes to all, and how many may be on their way to each.
-  struct Audience {
-    std::shared_ptr<const Ends> ends;
-    std::size_t backlog_limit = 0;
-  };
-  [[nodiscard]] Audience audience() const;
-
- private:
-  mutable Mutex mutex_;
-  Function<void(PipeEnd)> connected_ RR_GUARDED_BY(mutex_);
-  Audience audience_ RR_GUARDED_BY(mutex_){
-      std::make_shared<Ends>()};  // the list is replaced, never changed
-};
 
 /// The pipe endpoints of a client, on the service's side.
 class Pipes final : public endpoint::PipeSide {
@@ -62,6 +35,8 @@ class Pipes final : public endpoint::PipeSide {
   std::size_t end_if(const Choice& is_over);
   /// The object at a path is released, and those below it.
   void release(std::string_view path);
+  /// Rings may not be for all any more.
+  void renew_rings();
   /// The session is over.
   void end();
   [[nodiscard]] std::size_t count() const {
@@ -78,8 +53,13 @@ class Pipes final : public endpoint::PipeSide {
   struct Served;
   using End = std::shared_ptr<Served>;
 
+  [[nodiscard]] bool wants_ring(const Question& question, std::string_view element) const;
+  bool answer_ring_again(const Question& question, const ServedObject& object,
+                         const Member& member);
+  [[nodiscard]] bool may_join_ring(const Served& end) const;
+  channel::PipeRingStart join_ring(const End& end);
   End open(const Question& question, const ServedObject& object, const Member& member);
-  void finish(Served& end);
+  void finish(const End& end, bool is_told);
   void send_closed(const Served& end);
 
   ServerEndpoint& endpoint_;

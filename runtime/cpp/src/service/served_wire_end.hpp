@@ -9,6 +9,7 @@
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/slot_budget.hpp"
+#include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
 
@@ -50,8 +51,8 @@ class ServedWireEnd final : public WireEnd::State {
   /// Values come to the client by slots from now on, or did so once.
   void note_slots() { has_had_slots_ = true; }
   /// Gives the client the memory; false when it does not take it.
-  [[nodiscard]] bool pass_slots(const channel::SlotWriter& memory) const {
-    return connection().pass_slots(memory);
+  [[nodiscard]] bool pass_memory(const channel::SlotWriter& memory) const {
+    return connection().pass_memory(memory.handle());
   }
   /// Words by which the client says which slots it uses; null for none.
   [[nodiscard]] std::shared_ptr<channel::ServedHolds> draw_holds() const {

@@ -2,31 +2,12 @@
 #include "runtime/cpp/src/service/slot_readers.hpp"
 
 #include <algorithm>
-#include <span>
-#include <system_error>
 #include <utility>
 
-#include "runtime/cpp/src/platform/random.hpp"
+#include "runtime/cpp/src/service/counted_memory.hpp"
 #include "runtime/cpp/src/service/served_wire_end.hpp"
 
 namespace rr::service {
-namespace {
-
-// A memory, and its share of the node's for as long as anybody writes to it.
-struct CountedMemory {
-  channel::SlotShare share;
-  std::unique_ptr<channel::SlotWriter> writer;
-};
-
-// What a reader knows it by. Never 0, which says that there is none.
-std::uint64_t random_id() {
-  std::uint64_t id = 0;
-  platform::fill_random(std::as_writable_bytes(std::span(&id, 1)));
-  return std::max<std::uint64_t>(id, 1);
-}
-
-}  // namespace
-
 std::size_t SlotReaders::find(const ServedWireEnd& end) const {
   const auto found = std::find_if(readers_.begin(), readers_.end(),
                                   [&](const Reader& reader) { return reader.end == &end; });
@@ -37,15 +18,8 @@ bool SlotReaders::make(std::size_t value_size,
                        const std::shared_ptr<channel::SlotBudget>& of_node) {
   const auto sizes = channel::SlotSizes::for_value(value_size);
   if (sizes.slot == 0) return false;
-  auto counted = std::make_shared<CountedMemory>();
-  counted->share = channel::SlotShare(of_node, sizes.memory());
-  if (!counted->share.is_drawn()) return false;
-  std::error_code error;
-  counted->writer = channel::SlotWriter::make(sizes, random_id(), error);
-  if (!counted->writer) return false;
-  channel::SlotWriter* const writer = counted->writer.get();
-  memory_ = std::shared_ptr<channel::SlotWriter>(std::move(counted), writer);
-  return true;
+  memory_ = make_counted<channel::SlotWriter>(of_node, sizes.memory(), sizes);
+  return memory_ != nullptr;
 }
 
 bool SlotReaders::has_restricted() const {

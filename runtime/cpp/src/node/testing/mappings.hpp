@@ -20,8 +20,8 @@ struct Mapping {
   std::byte* begin = nullptr;
   std::size_t size = 0;
   bool is_writable = false;
-  std::uint32_t kind = 0;  ///< 1 two rings, 2 slots of a wire
-  std::uint64_t id = 0;    ///< of slots: the number that readers know it by
+  std::uint32_t kind = 0;  ///< 1 two rings, 2 slots of a wire, 3 ring of a pipe
+  std::uint64_t id = 0;    ///< of a wire or pipe: the number that readers know it by
 };
 
 /// All of them, but for those that go meanwhile.
@@ -69,6 +69,12 @@ class SecondMapping {
     const std::uint64_t value = random() >> (random() % 64);
     const std::size_t at = random() % (most - sizeof value) & ~std::size_t{3};
     std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, 1 + random() % sizeof value);
+  }
+  /// The same in a part of it.
+  void scribble_at(std::size_t begin, std::size_t size, std::mt19937_64& random) const {
+    const std::uint64_t value = random() >> (random() % 64);
+    const std::size_t at = begin + random() % (size / sizeof value) * sizeof value;
+    std::memcpy(static_cast<std::byte*>(bytes_) + at, &value, sizeof value);
   }
 
  private:

@@ -6,17 +6,22 @@
 //   shared_memory_peer FOLDER publish     publishes wires without end; says `ready URL`
 //   shared_memory_peer FOLDER read URL    reads these without end; says `reading` after the first
 //   value, and `at N` when it has read one whose number it has not said before
+//   shared_memory_peer FOLDER send        sends packets without end; says `ready URL`
+//   shared_memory_peer FOLDER receive URL receives these without end; says `receiving` after the
+//   first one, and `at N` with each that is a multiple of 20,000. One that is missing ends it
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "rr/node.hpp"
 #include "runtime/cpp/src/node/testing/counter.hpp"
+#include "runtime/cpp/src/node/testing/pipe_board.hpp"
 #include "runtime/cpp/src/node/testing/wired.hpp"
 
 namespace {
@@ -66,6 +71,33 @@ rr::NodeOptions options(const std::string& folder) {
   }
 }
 
+// Numbers from 1 on, as fast as the clients take them.
+[[noreturn]] void send(const rr::testing::PipeBoard& board) {
+  for (double number = 1;; ++number) {
+    (void)board.numbers().wait_sent(rr::testing::plenty);
+    board.numbers().send(number);
+  }
+}
+
+[[noreturn]] void receive(rr::testing::PipeBoardStub& board) {
+  auto numbers = board.numbers().connect();
+  double last = 0;
+  while (const auto number = numbers.receive_for(rr::testing::plenty)) {
+    if (last == 0) std::cout << "receiving" << std::endl;
+    if (last != 0 && *number != last + 1) std::abort();
+    last = *number;
+    if (std::fmod(last, 20'000) == 0) std::cout << "at " << last << std::endl;
+  }
+  std::abort();
+}
+
+// Says where it is.
+void offer(rr::Node& node, const std::string& name, const std::shared_ptr<rr::Skeleton>& object) {
+  node.register_service(name, object);
+  node.listen("rr+local://");
+  std::cout << "ready rr+local:///?nodeid=" << node.id().text() << "&service=" << name << std::endl;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -73,25 +105,29 @@ int main(int count, char** words) {
   if (arguments.size() < 2) return 2;
   rr::Node node(options(arguments[0]));
   if (arguments[1] == "serve") {
-    node.register_service("counter", std::make_shared<rr::testing::Counter>());
-    node.listen("rr+local://");
-    std::cout << "ready rr+local:///?nodeid=" << node.id().text() << "&service=counter"
-              << std::endl;
+    offer(node, "counter", std::make_shared<rr::testing::Counter>());
     while (std::cin.get() != std::istream::traits_type::eof()) {
     }
     return 0;
   }
   if (arguments[1] == "publish") {
     const auto wired = std::make_shared<rr::testing::Wired>();
-    node.register_service("wired", wired);
-    node.listen("rr+local://");
-    std::cout << "ready rr+local:///?nodeid=" << node.id().text() << "&service=wired" << std::endl;
+    offer(node, "wired", wired);
     publish(*wired);
+  }
+  if (arguments[1] == "send") {
+    const auto board = std::make_shared<rr::testing::PipeBoard>();
+    offer(node, "board", board);
+    send(*board);
   }
   if (arguments.size() != 3) return 2;
   if (arguments[1] == "read") {
     auto client = node.connect<rr::testing::WiredStub>(arguments[2]);
     read(*client);
+  }
+  if (arguments[1] == "receive") {
+    auto client = node.connect<rr::testing::PipeBoardStub>(arguments[2]);
+    receive(*client);
   }
   auto client = node.connect<rr::testing::CounterStub>(arguments[2]);
   client->get_value();
