@@ -231,7 +231,8 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
 
 [[gnu::hot]] void Pipes::take_packets(const Message& message, const Entry& entry,
                                       const MemoryRef& owner) {
-  if (take_ring_notice(message, entry)) return;
+  const bool may_have_rings = connection().shares_slots();
+  if (may_have_rings && take_ring_notice(message, entry)) return;
   endpoint::PipeArrival arrival(message, entry, owner, *session_.types(), {});
   End last;
   std::vector<End> others;  // rarely, more than one has packets in an entry
@@ -239,8 +240,10 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
       [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
         const MutexLock lock(mutex_);
         if (auto end = ends_.find(entry.service_path, entry.member, packet.index)) {
-          if (last && last != end) others.push_back(std::move(last));
-          last = end;
+          if (may_have_rings) {
+            if (last && last != end) others.push_back(std::move(last));
+            last = end;
+          }
           return {std::move(end), true};
         }
         return {nullptr, keep_early(entry, packet, decoder)};
@@ -256,14 +259,13 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
                           count, arrival.metadata());
   }
   arrival.deliver();
-  if (!last || !connection().shares_slots()) return;
+  if (!last) return;
   static_cast<ClientPipeEnd&>(*last).note_packet();
   for (const End& end : others) static_cast<ClientPipeEnd&>(*end).note_packet();
 }
 
 // False when the entry has packets.
 bool Pipes::take_ring_notice(const Message& message, const Entry& entry) {
-  if (!connection().shares_slots()) return false;
   Decoder decoder(message.version, &message.strings);
   const auto notice = endpoint::find_ring_notice(decoder, entry);
   if (!notice) return false;
