@@ -157,7 +157,17 @@ TEST_F(PipeRings, MayBeWrittenOverByTheService) {
       std::thread writer([&, seed = random()] {
         std::mt19937_64 chance(seed);
         while (!is_over) {
-          memories[chance() % memories.size()].scribble(chance);
+          SecondMapping& memory = memories[chance() % memories.size()];
+          switch (chance() % 4) {
+            case 0:
+              memory.scribble_at(0x100, 0x80, chance);  // words of the ring
+              break;
+            case 1:
+              memory.scribble_at(0x1000, 0x10, chance);  // and of its readers
+              break;
+            default:
+              memory.scribble(chance);
+          }
           if (chance() % 4 == 0) std::this_thread::yield();
         }
       });
