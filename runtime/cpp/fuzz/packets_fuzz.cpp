@@ -14,6 +14,7 @@
 #include "rr/varvalue.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/fuzz/promise.hpp"
+#include "runtime/cpp/fuzz/published_copy.hpp"
 #include "runtime/cpp/src/channel/pipe_ring.hpp"
 #include "runtime/cpp/src/channel/shared_header.hpp"
 
@@ -50,46 +51,28 @@ std::vector<std::byte> sample(std::size_t items) {
   return bytes;
 }
 
-// A memory with three packets, as a service has put them in, and one with the same bytes that may
-// be written to.
-class Memory {
- public:
-  Memory() {
-    std::error_code error;
-    const auto writer = PipeRingWriter::make(ring_size, 42, error);
-    promise(writer != nullptr, "there is a memory");
-    promise(writer->admit() == 0U, "the first reader");
-    for (const std::size_t items : {4U, 900U, 20U}) writer->put(sample(items));
-    promise(writer->position() < used - packets_at, "the sample is short");
-    const auto mapped =
-        rr::platform::map_published_memory(writer->handle(), ring_size.memory(), error);
-    begin_.assign(mapped.bytes(), mapped.bytes() + used);
-    memory_ = rr::platform::make_published_memory(ring_size.memory(), handle_, error);
-    promise(static_cast<bool>(memory_), "there is another one");
-  }
+// Three packets, as a service has put them in.
+rr::fuzz::PublishedCopy published() {
+  std::error_code error;
+  const auto writer = PipeRingWriter::make(ring_size, 42, error);
+  promise(writer != nullptr, "there is a memory");
+  promise(writer->admit() == 0U, "the first reader");
+  for (const std::size_t items : {4U, 900U, 20U}) writer->put(sample(items));
+  promise(writer->position() < used - packets_at, "the sample is short");
+  return {writer->handle(), ring_size.memory(), used};
+}
 
-  void reset() { std::memcpy(memory_.bytes(), begin_.data(), begin_.size()); }
-  // Places are within the words, those of the first readers, or the packets.
-  void write(std::span<const std::byte>& input) {
-    const std::uint8_t where = take_byte(input);
-    std::size_t at = take_byte(input) | std::size_t{take_byte(input)} << 8;
-    if ((where & 0x80) != 0) {
-      at = packets_at + at % (used - packets_at);
-    } else {
-      at = (where & 0x40) != 0 ? untils_at + at % 0x10 : at % 0x200;
-    }
-    const std::size_t size =
-        std::min({std::size_t{1} + (where >> 2 & 15U), input.size(), used - at});
-    std::memcpy(memory_.bytes() + at, input.data(), size);
-    input = input.subspan(size);
+// Places are within the words, those of the first readers, or the packets.
+void overwrite(rr::fuzz::PublishedCopy& memory, std::span<const std::byte>& input) {
+  const std::uint8_t where = take_byte(input);
+  std::size_t at = take_byte(input) | std::size_t{take_byte(input)} << 8;
+  if ((where & 0x80) != 0) {
+    at = packets_at + at % (used - packets_at);
+  } else {
+    at = (where & 0x40) != 0 ? untils_at + at % 0x10 : at % 0x200;
   }
-  [[nodiscard]] const rr::platform::Descriptor& handle() const { return handle_; }
-
- private:
-  std::vector<std::byte> begin_;
-  rr::platform::Descriptor handle_;
-  rr::platform::SharedMemory memory_;
-};
+  memory.write(input, where, at);
+}
 
 void decode(const RingPacket& packet) {
   static const auto types = std::make_shared<const rr::TypeRegistry>();
@@ -101,10 +84,10 @@ void decode(const RingPacket& packet) {
 }
 
 void read(std::span<const std::byte> input) {
-  static Memory memory;
+  static rr::fuzz::PublishedCopy memory = published();
   memory.reset();
   const std::uint8_t mode = take_byte(input);
-  for (int left = mode >> 4; left != 0 && !input.empty(); --left) memory.write(input);
+  for (int left = mode >> 4; left != 0 && !input.empty(); --left) overwrite(memory, input);
   std::error_code error;
   const auto reader = PipeRingReader::open(memory.handle(), error);
   if (!reader) return;
@@ -122,7 +105,7 @@ void read(std::span<const std::byte> input) {
     } else {
       static_cast<void>(reader->ask());
     }
-    while (!input.empty() && take_byte(input) % 4 != 0) memory.write(input);
+    while (!input.empty() && take_byte(input) % 4 != 0) overwrite(memory, input);
   }
 }
 

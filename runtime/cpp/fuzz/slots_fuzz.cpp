@@ -13,12 +13,14 @@
 #include "rr/varvalue.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/fuzz/promise.hpp"
+#include "runtime/cpp/fuzz/published_copy.hpp"
 #include "runtime/cpp/src/channel/shared_header.hpp"
 #include "runtime/cpp/src/channel/shared_rings.hpp"
 #include "runtime/cpp/src/channel/wire_slots.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 
 using rr::fuzz::promise;
+using rr::fuzz::PublishedCopy;
 using rr::fuzz::take_byte;
 
 namespace {
@@ -42,50 +44,32 @@ rr::VarStringMap sample() {
   return value;
 }
 
-// A memory that a service has published one value in, and a second one with the same bytes that may
-// be written to.
-class Memory {
- public:
-  Memory() {
-    std::error_code error;
-    const rr::VarStringMap value = sample();
-    rr::Writer writer;
-    writer.reset(rr::MessageVersion::v4);
-    rr::endpoint::write_wire_value(writer, rr::type_of<rr::VarStringMap>, &value);
-    rr::endpoint::write_wire_time(writer, {.seconds = 1, .nanoseconds = 2});
-    const auto sizes = rr::channel::SlotSizes::for_value(writer.size());
-    const auto published = SlotWriter::make(sizes, 42, error);
-    promise(published != nullptr && published->publish(writer.pieces(), writer.size(), 1),
-            "there is a memory");
-    const auto mapped =
-        rr::platform::map_published_memory(published->handle(), sizes.memory(), error);
-    begin_.assign(mapped.bytes(), mapped.bytes() + slots_at + (first_slot + 1) * sizes.slot);
-    memory_ = rr::platform::make_published_memory(sizes.memory(), handle_, error);
-    promise(static_cast<bool>(memory_), "there is another one");
-  }
+// One value, as a service has published it.
+PublishedCopy published() {
+  std::error_code error;
+  const rr::VarStringMap value = sample();
+  rr::Writer writer;
+  writer.reset(rr::MessageVersion::v4);
+  rr::endpoint::write_wire_value(writer, rr::type_of<rr::VarStringMap>, &value);
+  rr::endpoint::write_wire_time(writer, {.seconds = 1, .nanoseconds = 2});
+  const auto sizes = rr::channel::SlotSizes::for_value(writer.size());
+  const auto slots = SlotWriter::make(sizes, 42, error);
+  promise(slots != nullptr && slots->publish(writer.pieces(), writer.size(), 1),
+          "there is a memory");
+  return {slots->handle(), sizes.memory(), slots_at + (first_slot + 1) * sizes.slot};
+}
 
-  void reset() { std::memcpy(memory_.bytes(), begin_.data(), begin_.size()); }
-  // Places are within the words most of the time, or in the slot.
-  void write(std::span<const std::byte>& input) {
-    const std::uint8_t where = take_byte(input);
-    std::size_t at = take_byte(input) | std::size_t{take_byte(input)} << 8;
-    if ((where & 0x80) != 0) {
-      at += begin_.size() - 0x10000 * std::size_t{1 + (where & 3U)};
-    } else {
-      at %= 0x300;
-    }
-    const std::size_t size = std::min({std::size_t{1} + (where >> 2 & 15U), input.size(),
-                                       begin_.size() - std::min(at, begin_.size())});
-    std::memcpy(memory_.bytes() + at, input.data(), size);
-    input = input.subspan(size);
+// Places are within the words most of the time, or in the slot.
+void overwrite(PublishedCopy& memory, std::span<const std::byte>& input) {
+  const std::uint8_t where = take_byte(input);
+  std::size_t at = take_byte(input) | std::size_t{take_byte(input)} << 8;
+  if ((where & 0x80) != 0) {
+    at += memory.used() - 0x10000 * std::size_t{1 + (where & 3U)};
+  } else {
+    at %= 0x300;
   }
-  [[nodiscard]] const rr::platform::Descriptor& handle() const { return handle_; }
-
- private:
-  std::vector<std::byte> begin_;
-  rr::platform::Descriptor handle_;
-  rr::platform::SharedMemory memory_;
-};
+  memory.write(input, where, at);
+}
 
 std::shared_ptr<SlotHolds::Words> hold_words() {
   std::error_code error;
@@ -96,7 +80,7 @@ std::shared_ptr<SlotHolds::Words> hold_words() {
 }
 
 // What nobody has written over is read in place.
-void try_sample(Memory& memory, const std::shared_ptr<SlotHolds::Words>& words) {
+void try_sample(PublishedCopy& memory, const std::shared_ptr<SlotHolds::Words>& words) {
   std::error_code error;
   memory.reset();
   const auto reader = SlotReader::open(memory.handle(), error);
@@ -123,7 +107,7 @@ void use(const rr::VarStringMap& value) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static Memory memory;
+  static PublishedCopy memory = published();
   static const auto words = hold_words();
   static const auto types = std::make_shared<const rr::TypeRegistry>();
   static std::once_flag is_tried;
@@ -131,7 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::span<const std::byte> input = rr::fuzz::input_of(data, size);
   const std::uint8_t mode = take_byte(input);
   memory.reset();
-  for (int left = mode >> 4; left != 0 && !input.empty(); --left) memory.write(input);
+  for (int left = mode >> 4; left != 0 && !input.empty(); --left) overwrite(memory, input);
   std::error_code error;
   auto reader = SlotReader::open(memory.handle(), error);
   if (!reader) return 0;
@@ -141,7 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     SlotValue value;
     if (reader->read(value) == SlotReader::Found::value) {
       promise(value.bytes.size() <= reader->sizes().slot, "a value is in its slot");
-      if (!input.empty()) memory.write(input);
+      if (!input.empty()) overwrite(memory, input);
       rr::Entry entry;
       entry.elements = value.bytes;
       entry.element_count = rr::endpoint::wire_elements;
@@ -156,7 +140,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         // Another type, or none.
       }
     }
-    while (!input.empty() && take_byte(input) % 4 != 0) memory.write(input);
+    while (!input.empty() && take_byte(input) % 4 != 0) overwrite(memory, input);
     use(made);
   }
   reader.reset();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ring of a pipe in shared memory: a service that leaves out a reader that is too slow, and a
-// reader that asks to be told (channel/pipe_ring_steps.hpp).
+// reader that requests a notice (channel/pipe_ring_steps.hpp).
 #include <array>
 #include <cstdint>
 

@@ -23,7 +23,7 @@ class PipeCursor final : public HeldPlace {
   void begin(std::uint64_t turn, std::uint64_t position);
   /// All before this position was copied.
   void advance(std::uint64_t position);
-  /// Asks to be told when there is something behind this position. False when there is already.
+  /// Requests a notice of the next packet behind this position. False when there is already.
   [[nodiscard]] bool ask(const Steps::Words& ring, const Steps::Until& until,
                          std::uint64_t position);
   void detach() override;

@@ -63,7 +63,7 @@ class PipeRingWriter {
 
   [[nodiscard]] std::uint64_t id() const { return id_; }
   [[nodiscard]] PipeRingSize size() const { return size_; }
-  /// To be passed to readers, who cannot write by it.
+  /// To be passed to readers; it is read-only.
   [[nodiscard]] const platform::Descriptor& handle() const { return handle_; }
 
   /// Where the next packet will begin, and how many were before it.
@@ -111,7 +111,7 @@ class PipeRingWriter {
   std::uint64_t count_ = 0;
 };
 
-/// What a reader is told when it begins.
+/// What a reader begins with.
 struct PipeRingStart {
   std::uint64_t id = 0;        ///< of the memory; 0: there is none
   std::uint64_t position = 0;  ///< of the first packet that is for it
@@ -152,7 +152,7 @@ class PipeRingReader {
   };
   /// Copies out the next packet. Throws std::bad_alloc, and then the packet is still there.
   Found read(RingPacket& packet);
-  /// After read() has found nothing: asks to be told of the next packet. False when there is one
+  /// After read() has found nothing: requests a notice of the next packet. False when there is one
   /// already.
   [[nodiscard]] bool ask();
   /// Whether it has read all that it will ever get there: the rest comes by messages.

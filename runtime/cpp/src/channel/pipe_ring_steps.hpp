@@ -28,7 +28,7 @@ struct PipeRingWords {
 inline constexpr std::size_t pipe_ring_readers = 1024;
 
 /// How packets get into a ring that many read, each at its own pace. A reader says how far it is,
-/// and that it wants to be told of the next packet, in the words that it has in the memory of its
+/// and that it requests a notice of the next packet, in the words that it has in the memory of its
 /// connection. They count only when they have its turn: another reader may have had them before.
 ///
 /// The service writes over packets that all have read. A reader that is too far behind is left out
@@ -54,14 +54,14 @@ struct PipeRingSteps {
     Sync::fence_release();
   }
   /// The bytes before this position are there. In one order with what readers ask: a reader finds
-  /// the packet, or has_asked() finds that it wants to be told.
+  /// the packet, or asked() finds the request for a notice.
   static void commit(Words& words, std::uint64_t position) { words.written.store(position); }
   /// How far a reader is; what it says is not to be believed. 0 when it has not begun.
   static std::uint64_t cursor(const Holds& holds, std::uint64_t turn) {
     if (holds.numbers[turn_at].load(std::memory_order_acquire) != turn) return 0;
     return holds.numbers[cursor_at].load(std::memory_order_acquire);
   }
-  /// How often a reader has asked to be told, after commit().
+  /// How many notices a reader has requested, after commit().
   static std::uint64_t asked(const Holds& holds, std::uint64_t turn) {
     // The turn first: what was asked before it is not this reader's.
     return holds.numbers[turn_at].load() == turn ? holds.numbers[asked_at].load() : 0;
@@ -95,8 +95,8 @@ struct PipeRingSteps {
   static void advance(Holds& holds, std::uint64_t position) {
     holds.numbers[cursor_at].store(position, std::memory_order_release);
   }
-  /// Asks to be told, for the `count`th time. False when there is something meanwhile behind this
-  /// position: then the reader may be told, or not.
+  /// Requests a notice, for the `count`th time. False when there is something meanwhile behind this
+  /// position: then the reader may get one, or not.
   static bool ask(const Words& words, const Until& until, Holds& holds, std::uint64_t count,
                   std::uint64_t position) {
     holds.numbers[asked_at].store(count);

@@ -56,7 +56,7 @@ class ClientPipeEnd final : public PipeEnd::State {
   }
   [[nodiscard]] std::shared_ptr<Pipes> pipes() const;
   struct Draining {
-    bool asks = false;     // the service is to tell of what comes then
+    bool asks = false;     // for a notice, once nothing is left
     bool is_here = false;  // on a thread of the node, which runs what waits for packets
     bool is_last = false;  // nothing is read afterwards
   };

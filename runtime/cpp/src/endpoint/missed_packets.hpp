@@ -20,8 +20,8 @@ struct MissedPackets {
   };
   std::uint64_t read = 0;  ///< packets that it has read there, as it says
   std::deque<Packet> packets;
-  bool is_lost = false;  ///< they cannot be had: the endpoint must end
-  bool is_told = false;  ///< the client knows that there is no ring for it
+  bool is_lost = false;      ///< they cannot be had: the endpoint must end
+  bool is_notified = false;  ///< the client has the notice that it is in no ring
 };
 
 }  // namespace rr::endpoint

@@ -104,8 +104,8 @@ void PipeEnd::State::leave_ring(endpoint::PipeSide& side) {
     throw Error(ErrorCode::out_of_system_resource,
                 "packets of the pipe that the client has not read cannot be sent to it any more");
   }
-  if (!missed_->is_told) send_notice(side);
-  missed_->is_told = true;
+  if (!missed_->is_notified) send_notice(side);
+  missed_->is_notified = true;
   Writer& writer = channel::thread_writer();
   while (!missed_->packets.empty()) {
     const endpoint::MissedPackets::Packet& packet = missed_->packets.front();
@@ -118,7 +118,7 @@ void PipeEnd::State::leave_ring(endpoint::PipeSide& side) {
   has_ring_ = false;
 }
 
-void PipeEnd::State::tell_of_ring() {
+void PipeEnd::State::notify_of_ring() {
   const auto side = this->side();
   if (side) send_notice(*side);
 }

@@ -157,13 +157,13 @@ TEST_F(PipeEndRingTest, PacketsThatAreAcknowledgedAreInNoRing) {
   EXPECT_EQ(end->unacknowledged(), 0U);
 }
 
-TEST_F(PipeEndRingTest, TellsTheClientOfTheRing) {
+TEST_F(PipeEndRingTest, NotifiesTheClientOfTheRing) {
   const auto end = make_served();
-  end->tell_of_ring();
+  end->notify_of_ring();
   ASSERT_EQ(side_->fake.sent.size(), 1U);
   EXPECT_TRUE(is_notice(0));
   end->finish();
-  end->tell_of_ring();
+  end->notify_of_ring();
   EXPECT_EQ(side_->fake.sent.size(), 1U);
 }
 

@@ -95,8 +95,8 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   /// It has been taken out of the ring, or is to be: sends what the client has not read there.
   /// Throws as send(); what could not be sent is then tried again before the next packet.
   void send_missed();
-  /// Tells the client that there are packets in the ring, or that it is in none any more.
-  void tell_of_ring();
+  /// Notifies the client of packets in the ring, or that it is in none any more.
+  void notify_of_ring();
   /// Whether a packet was sent to this client alone while it was in a ring.
   [[nodiscard]] bool is_sent_to_alone() const { return is_sent_to_alone_; }
   /// Whether packets are to be acknowledged.
@@ -139,7 +139,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   /// Takes the end out of the ring, if it is there still, and takes what the client has not read.
   /// Once. Under the lock of sending.
   virtual endpoint::MissedPackets take_missed() { return {}; }
-  /// Packets may be where nobody has told of them.
+  /// Packets may be in memory, without a message about them.
   virtual void look() {}
   /// The same, and the program waits for more.
   virtual void listen() {}

@@ -237,7 +237,7 @@ TEST_F(PipeRings, APacketThatIsTooLargeComesByAMessage) {
   EXPECT_EQ(rings_read(), 2U);
 }
 
-// What is sent to one client only is not for the eyes of others.
+// Other clients cannot read what is sent to one alone.
 TEST_F(PipeRings, APacketForOneClientComesByAMessage) {
   serve(options());
   auto one = connect_numbers();
@@ -437,8 +437,8 @@ ConnectOptions as_user(const std::string& name) {
   return options;
 }
 
-// Whoever has left has the old memory still, and must not see what is sent afterwards.
-TEST_F(PipeRings, WhoeverLeavesAServiceWithUsersLeavesTheMemoryBehind) {
+// A client that has left has the old memory still, and must not see what is sent afterwards.
+TEST_F(PipeRings, AClientThatLeavesAServiceWithUsersKeepsTheOldMemoryOnly) {
   serve(options(), {.users = std::make_shared<KnownUsers>(),
                     .rights = std::make_shared<Rights>("allow user:* path board.** access *\n")});
   auto alice = connect(options(), as_user("alice"))->numbers().connect();

@@ -48,7 +48,7 @@ std::shared_ptr<const PipePlace::Ends> PipePlace::ends() const {
 
 // It gets messages.
 void PipePlace::tell(const End& end) {
-  told_ = with_end(*told_, end, [](const End& one) { return one->identity.node; });
+  by_message_ = with_end(*by_message_, end, [](const End& one) { return one->identity.node; });
 }
 
 void PipePlace::add(const End& end) {
@@ -73,7 +73,7 @@ void PipePlace::remove(const End& end, bool is_told) {
     if (must_renew) readers_.leave_all();
     left = note_left();
     before = std::exchange(ends_, without_end(*ends_, *end));
-    told_ = without_end(*told_, *end);
+    by_message_ = without_end(*by_message_, *end);
   }
   send_missed(left);
   if (!is_told) return;
@@ -81,15 +81,15 @@ void PipePlace::remove(const End& end, bool is_told) {
   readers_.forget(*end);
 }
 
-// An end that leaves the ring before the packet is among those that are told.
+// An end that leaves the ring before the packet gets it by a message.
 [[gnu::hot]] PipePlace::Sending PipePlace::begin_packet(PipeEnd::State::Written& packet) {
   Sending sending;
   const MutexLock lock(mutex_);
   if (!readers_.is_empty()) {
-    readers_.put(packet.in(MessageVersion::v4).bytes, sending.rung);
+    readers_.put(packet.in(MessageVersion::v4).bytes, sending.notified);
     note_left();
   }
-  sending.told = told_;
+  sending.by_message = by_message_;
   sending.backlog_limit = backlog_limit_;
   return sending;
 }
@@ -98,10 +98,10 @@ std::shared_ptr<channel::PipeRingWriter> PipePlace::join_ring(RingReaders::Joini
                                                               channel::PipeRingStart& start) {
   const End end = joining.end;
   const MutexLock lock(mutex_);
-  const bool is_here = std::ranges::find(*told_, end) != told_->end();
+  const bool is_here = std::ranges::find(*by_message_, end) != by_message_->end();
   if (!is_here || backlog_limit_ != 0) return nullptr;
   auto ring = readers_.add(std::move(joining), start);
-  if (ring) told_ = without_end(*told_, *end);
+  if (ring) by_message_ = without_end(*by_message_, *end);
   return ring;
 }
 
@@ -147,9 +147,9 @@ void PipePlace::send_missed(const Ends& left) {
   }
 }
 
-void PipePlace::tell_of_ring(const Ends& rung) {
-  for (const End& end : rung) {
-    or_close(end, [&] { end->tell_of_ring(); });
+void PipePlace::notify_of_ring(const Ends& notified) {
+  for (const End& end : notified) {
+    or_close(end, [&] { end->notify_of_ring(); });
   }
 }
 

@@ -24,15 +24,15 @@ class PipePlace {
   void set_backlog_limit(std::size_t packets);
 
   void add(const End& end);
-  /// An end is over. `is_told`: its client gets what it has not read before it is told so.
+  /// An end is over. `is_told`: its client is notified, and gets what it has not read before that.
   void remove(const End& end, bool is_told);
   [[nodiscard]] std::shared_ptr<const Ends> ends() const;
 
   /// How a packet that goes to all is on its way.
   struct Sending {
-    std::shared_ptr<const Ends> told{};  ///< to whom it has to be sent by messages
-    std::size_t backlog_limit = 0;       ///< how many may be on their way to each of them
-    Ends rung{};                         ///< who is to be told that it is in the ring
+    std::shared_ptr<const Ends> by_message{};  ///< the ends that send it as a message
+    std::size_t backlog_limit = 0;             ///< how many may be on their way to each of them
+    Ends notified{};  ///< the ends whose clients get a notice that it is in the ring
   };
   /// Puts a packet into the ring, if somebody reads there. Throws what Written throws.
   Sending begin_packet(PipeEnd::State::Written& packet);
@@ -45,8 +45,8 @@ class PipePlace {
   void renew_ring();
   /// What an end has missed that was in the ring. Under the end's lock of sending.
   endpoint::MissedPackets take_missed(const PipeEnd::State& end);
-  /// Tells clients that there is a packet for them in the ring.
-  static void tell_of_ring(const Ends& rung);
+  /// Notifies clients of a packet in the ring.
+  static void notify_of_ring(const Ends& notified);
 
  private:
   void tell(const End& end) RR_REQUIRES(mutex_);
@@ -57,7 +57,8 @@ class PipePlace {
   Function<void(PipeEnd)> connected_ RR_GUARDED_BY(mutex_);
   // The lists are replaced, never changed.
   std::shared_ptr<const Ends> ends_ RR_GUARDED_BY(mutex_) = std::make_shared<Ends>();
-  std::shared_ptr<const Ends> told_ RR_GUARDED_BY(mutex_) = ends_;  // those that are in no ring
+  std::shared_ptr<const Ends> by_message_ RR_GUARDED_BY(mutex_) =
+      ends_;  // those that are in no ring
   std::size_t backlog_limit_ RR_GUARDED_BY(mutex_) = 0;
   RingReaders readers_ RR_GUARDED_BY(mutex_);  // the others
 };

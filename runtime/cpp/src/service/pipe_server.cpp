@@ -93,9 +93,9 @@ void PipeServerBase::set_backlog_limit(std::size_t packets) const {
     throw Error(ErrorCode::write_only_member, "Write only pipe");
   }
   Encoded packet(*member_, value);
-  const auto [told, limit, rung] = place_->begin_packet(packet);
-  service::PipePlace::tell_of_ring(rung);
-  for (const auto& end : *told) {
+  const auto [by_message, limit, notified] = place_->begin_packet(packet);
+  service::PipePlace::notify_of_ring(notified);
+  for (const auto& end : *by_message) {
     if (limit != 0) {
       end->ask_for_acknowledgements(true);
       if (end->unacknowledged() > limit) {

@@ -13,7 +13,7 @@ namespace {
 
 using Steps = channel::PipeRingWriter::Steps;
 
-// Never 0, which words have that nobody uses.
+// Never 0, which is in unused words.
 std::uint64_t next_turn() {
   static std::atomic<std::uint64_t> turns{0};
   return turns.fetch_add(1, std::memory_order_relaxed) + 1;
@@ -46,7 +46,7 @@ std::shared_ptr<channel::PipeRingWriter> RingReaders::add(Joining joining,
   const auto number = share.is_drawn() ? ring_->admit() : std::nullopt;
   if (!number) {
     if (readers_.empty()) ring_.reset();
-    // With many who read at once there would be no end of new memories.
+    // With many readers at once, memories would be replaced without end.
     is_used_up_ = share.is_drawn() && readers_.size() <= channel::pipe_ring_readers / 2;
     return nullptr;
   }
@@ -62,7 +62,7 @@ std::shared_ptr<channel::PipeRingWriter> RingReaders::add(Joining joining,
   return ring_;
 }
 
-[[gnu::hot]] bool RingReaders::put(std::span<const std::byte> packet, Ends& rung) {
+[[gnu::hot]] bool RingReaders::put(std::span<const std::byte> packet, Ends& notified) {
   largest_ = std::max(largest_, packet.size());
   if (is_used_up_ || !ring_->size().fits(packet.size())) {
     leave_all();
@@ -75,7 +75,7 @@ std::shared_ptr<channel::PipeRingWriter> RingReaders::add(Joining joining,
     const std::uint64_t asked = Steps::asked(reader.holds->words(), reader.turn);
     if (asked == reader.answered) continue;
     reader.answered = asked;
-    rung.push_back(reader.end);
+    notified.push_back(reader.end);
   }
   return true;
 }

@@ -27,7 +27,7 @@ class RingReaders {
   using End = std::shared_ptr<PipeEnd::State>;
   using Ends = std::vector<End>;
 
-  /// Who is to read.
+  /// A reader that joins.
   struct Joining {
     End end;
     bool is_restricted = false;  ///< its service has users or rights
@@ -38,8 +38,8 @@ class RingReaders {
 
   [[nodiscard]] bool is_empty() const { return readers_.empty(); }
   [[nodiscard]] bool has(const PipeEnd::State& end) const { return find(end) != readers_.size(); }
-  /// Whether somebody who leaves, or has left, may lose the right to read: then those who stay are
-  /// to have another memory.
+  /// Whether a client that leaves, or has left, may have lost the right to read: then the others
+  /// get another memory.
   [[nodiscard]] bool has_restricted() const;
 
   /// Adds an end that is not here, with a memory if there is none, and says from where on it reads:
@@ -47,9 +47,9 @@ class RingReaders {
   /// system no memory, or the memory has had too many readers. Then there is a new one soon.
   std::shared_ptr<channel::PipeRingWriter> add(Joining joining, channel::PipeRingStart& start);
   /// Puts a packet into the ring, an element `packet` of format 4, or takes all out when it is too
-  /// large, or the memory is to be another one. Returns whether it is there. Afterwards `rung` has
-  /// the ends that are to be told of it.
-  bool put(std::span<const std::byte> packet, Ends& rung);
+  /// large, or the memory is to be another one. Returns whether it is there. Afterwards `notified`
+  /// has the ends whose clients are to be notified.
+  bool put(std::span<const std::byte> packet, Ends& notified);
   /// Takes an end out, or all. They are among those that have left.
   void leave(const PipeEnd::State& end);
   void leave_all();
@@ -68,7 +68,7 @@ class RingReaders {
     std::uint32_t number = 0;    // in the memory
     std::uint64_t position = 0;  // up to which it has read, as is known
     std::uint64_t joined = 0;    // packets that were put in before it came
-    std::uint64_t answered = 0;  // how often it has been told, of what it has asked
+    std::uint64_t answered = 0;  // requests for a notice that were answered
     channel::SlotShare share;    // of its session
     std::shared_ptr<channel::ServedHolds> holds;
   };
