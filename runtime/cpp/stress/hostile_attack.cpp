@@ -30,7 +30,7 @@ constexpr auto time_to_give_back = 5s;
 // Long enough for what an attack takes to be taken; figures want more.
 std::chrono::seconds attack_time() {
   const char* const seconds = std::getenv("ROBDEF_ATTACK_SECONDS");
-  return seconds != nullptr ? std::chrono::seconds(std::atoi(seconds)) : 2s;
+  return seconds != nullptr ? std::chrono::seconds(std::atoi(seconds)) : 1s;
 }
 
 std::size_t resident(pid_t process) {

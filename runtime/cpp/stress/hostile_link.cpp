@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -38,6 +39,10 @@ HostileLink::HostileLink(std::uint16_t port, const NodeId& server, int number)
   static_cast<void>(
       ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
   ::fcntl(socket_, F_SETFL, O_NONBLOCK);
+  // The second part of a message does not wait for the acknowledgement of the first, which takes
+  // 40 ms.
+  const int on = 1;
+  ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
 
 HostileLink::~HostileLink() {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The service that hostile_memory_test attacks, in a process of its own: says `port` and `id`, and
 // ends with its standard input.
+#include <sys/prctl.h>
+
 #include <iostream>
 #include <memory>
 #include <string>
@@ -58,6 +60,8 @@ class Store final : public Skeleton {
 };
 
 void serve() {
+  // What is resident is what was written then, and not the rest of a huge page as well.
+  ::prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
   Node node;
   node.register_service("counter", std::make_shared<testing::Counter>());
   node.register_service("store", std::make_shared<Store>());
