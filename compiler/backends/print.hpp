@@ -26,8 +26,8 @@ class OutputPrinter {
   /// Nothing where the name of the file is empty.
   void print(const std::vector<const void*>& views, FileSet& files) const {
     try {
-      std::string path = path_.render(views);
-      if (!path.empty()) files.add(std::move(path), text_.render(views));
+      const std::string path = path_.render(views);
+      if (!path.empty()) files.add(path, text_.render(views));
     } catch (const std::logic_error& error) {
       throw TemplateError(TemplateFolder::rules_name, rule_.line, error.what());
     }

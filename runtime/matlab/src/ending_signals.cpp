@@ -87,7 +87,14 @@ void EndingSignals::prepare() {
   pthread_sigmask(SIG_UNBLOCK, &taken, nullptr);
   has_come = false;
   // What came to the other thread, or before; Ctrl-C is for the call to see.
-  if (octave_signal_caught != 0 && octave_interrupt_state == 0) octave_quit();
+  if (octave_signal_caught == 0 || octave_interrupt_state != 0) return;
+  try {
+    octave_quit();
+  } catch (const octave::interrupt_exception&) {
+    // Octave notes that a signal has come before it counts Ctrl-C. As its handler leaves it:
+    octave_interrupt_state = 1;
+    octave_signal_caught = 1;
+  }
 }
 
 bool EndingSignals::is_pending() { return has_come && octave_signal_caught != 0; }

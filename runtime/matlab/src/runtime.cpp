@@ -88,6 +88,8 @@ void Runtime::interrupted() {
   std::vector<std::stop_source> waiting;
   {
     const MutexLock lock(waiting_mutex_);
+    // Ctrl-C may have ended a call already, and what waits now is the next one.
+    if (!Interrupts::is_pending()) return;
     waiting = waiting_;
   }
   for (std::stop_source& one : waiting) one.request_stop();

@@ -42,8 +42,9 @@ CASES
 )
 # Generated classes have calls of their own, and the rest in common with the dynamic object.
 [ $# = 3 ] || blocking=$(head -n 2 <<< "$blocking")
-# Who sends it lives on: the thread of Octave that hears of its end might take the signal along.
-sent='function sent(name), system(sprintf("sleep 0.3; kill -%s %d; sleep 1", name, getpid()), false, "async"); end;
+sent='function sent(name)
+  system(sprintf("\"%s/signal_when_idle.sh\" %s %d", getenv("RR_TEST_FILES"), name, getpid()), false, "async");
+end;
 c = rr_bench(); other = rr_bench();'
 
 # Ctrl-C: an error that says so, at once, and the interpreter goes on.
@@ -71,8 +72,9 @@ ends 'SIGHUP: a call' "$sent sent('HUP'); try, c.nap(15); catch err, disp(err), 
 ends 'SIGTERM in a handler that waits' "$sent
   l = addlistener(other, 'fired', @(n, s) c.nap(15)); sent('TERM'); other.fire(1);
   try, RobotRaconteur.Poll(20); catch err, disp(err), end; disp('went on')"
-ends 'SIGTERM between calls' "$sent sent('TERM'); try, while true, c.stop(); pause(0.01); end; catch err, disp(err), end;
-  disp('went on')"
+ends 'SIGTERM between calls' "$sent
+  system(sprintf('sleep 0.3; kill -TERM %d; sleep 1', getpid()), false, 'async');
+  try, while true, c.stop(); pause(0.01); end; catch err, disp(err), end; disp('went on')"
 ends 'calls at the end' "$sent sent('TERM'); function last(), d = rr_bench(); d.v_double = d.add(40, 2); end;
   atexit('last'); c.nap(15); disp('went on')"
 expect 'what the function at the end has done' 0 'it is 42' "c = rr_bench(); printf('it is %d\n', c.v_double)"
