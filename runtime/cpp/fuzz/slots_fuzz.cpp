@@ -79,7 +79,7 @@ std::shared_ptr<SlotHolds::Words> hold_words() {
   return rings.holds();
 }
 
-// What nobody has written over is read in place.
+// A value that was not overwritten is read in place.
 void try_sample(PublishedCopy& memory, const std::shared_ptr<SlotHolds::Words>& words) {
   std::error_code error;
   memory.reset();
