@@ -203,7 +203,7 @@ class FileReader {
     std::string pattern = text(value);
     std::string name = pattern;
     std::erase(name, '*');
-    if (value.kind == Kind::text && pattern.find_first_of("-") == std::string::npos &&
+    if (value.kind == Kind::text && pattern.find('-') == std::string::npos &&
         (name.empty() ? !pattern.empty() : is_level_name(name))) {
       return pattern;
     }

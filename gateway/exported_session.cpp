@@ -107,7 +107,7 @@ bool ExportedSession::is_new(const std::string& path, const dynamic::Object& obj
   return objects_.try_emplace(path, object).second;
 }
 
-void ExportedSession::keep(LockRequest request, const dynamic::Object& object, Locked done) {
+void ExportedSession::keep(const LockRequest& request, const dynamic::Object& object, Locked done) {
   if (request.operation == LockOperation::enter_monitor) {
     enter(request, object, std::move(done));
   } else if (request.operation == LockOperation::go_on_entering) {

@@ -58,7 +58,7 @@ class ExportedSession : public std::enable_shared_from_this<ExportedSession> {
   /// Carries out an operation on the lock or the monitor of an object of this session. The answer
   /// comes on the thread that uses this. Throws rr::Error: invalid_operation for what does not fit
   /// the operations before, out_of_system_resource when too many run.
-  void keep(LockRequest request, const dynamic::Object& object, Locked done);
+  void keep(const LockRequest& request, const dynamic::Object& object, Locked done);
   /// A lock of its user at this path was released in another session.
   void forget_lock(const std::string& path);
   /// Answers those that have waited long for a monitor. To be called often.

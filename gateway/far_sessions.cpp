@@ -138,6 +138,7 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
       refusal = client_has_gone();
     }
   }
+  // NOLINTBEGIN(bugprone-use-after-move): they are moved where the request waits.
   if (refusal) {
     done(refusal, {});
   } else if (opens) {
@@ -147,6 +148,7 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
   } else if (!is_waiting) {
     send(client, name, std::move(wanted), std::move(done));
   }
+  // NOLINTEND(bugprone-use-after-move)
 }
 
 bool FarSessions::has_room(const Session& session, std::exception_ptr& refusal) const {

@@ -28,7 +28,8 @@ dynamic::Value index_of(const dynamic::Object& object, const PathStep& step) {
 
 using Found = RobotSession::Found;
 
-void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at, Found done) {
+void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at,
+          const Found& done) {
   if (at == steps.size()) {
     done(nullptr, from);
     return;
@@ -52,7 +53,7 @@ void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t 
 
 }  // namespace
 
-void find_object(const dynamic::Object& from, const std::string& path, Found done) {
+void find_object(const dynamic::Object& from, const std::string& path, const Found& done) {
   try {
     walk(from, path_steps(path), 0, done);
   } catch (...) {
@@ -117,7 +118,7 @@ dynamic::Object RobotSession::root() const {
   return dynamic::Object::of(subscription_.default_client<Stub>());
 }
 
-void RobotSession::find(const std::string& path, Found done) {
+void RobotSession::find(const std::string& path, const Found& done) {
   try {
     find_object(root(), path, done);
   } catch (...) {

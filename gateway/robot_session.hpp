@@ -19,7 +19,7 @@ namespace rr::gateway {
 
 /// The object at a path below another (gateway/topics.hpp). Does not wait.
 void find_object(const dynamic::Object& from, const std::string& path,
-                 Function<void(std::exception_ptr, dynamic::Object)> done);
+                 const Function<void(std::exception_ptr, dynamic::Object)>& done);
 
 /// The session of one user with the robot's service, made again when it is lost. Any thread may use
 /// it; functions are called on threads of the node.
@@ -45,7 +45,7 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
 
   /// The object at a path below the root (gateway/topics.hpp). Fails with connection_error when the
   /// robot is not connected.
-  void find(const std::string& path, Found done);
+  void find(const std::string& path, const Found& done);
   /// Whether find() can succeed. False, with the reason, when the robot is not connected; without
   /// a reason while the first attempt goes on.
   [[nodiscard]] bool is_connected(std::optional<Error>& reason) const;

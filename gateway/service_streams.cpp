@@ -87,7 +87,7 @@ void ServiceExporter::publish_definitions(const dynamic::Object& root) {
     names += (names.empty() ? "" : ",") + name;
     retain({topic + "/" + name, bytes_of(definitions.text(name))});
   }
-  const std::string type = root.type_name();
+  const std::string& type = root.type_name();
   Bytes attributes = encode_attributes(session_->attributes());
   Message message{topic, bytes_of(definitions.text(type.substr(0, type.rfind('.'))))};
   message.properties = {

@@ -101,7 +101,10 @@ void StreamReader::take(Message message, std::uint64_t number) {
 void StreamReader::keep(Message message, std::uint64_t number) {
   const std::size_t size = message.payload.size();
   if (kept_.size() >= options_.records || kept_bytes_ + size > options_.bytes) return;
-  if (kept_.try_emplace(number, std::move(message)).second) kept_bytes_ += size;
+  const auto [place, is_new] = kept_.try_emplace(number);
+  if (!is_new) return;
+  place->second = std::move(message);
+  kept_bytes_ += size;
 }
 
 void StreamReader::hand_out(const Message& message, std::uint64_t number) {

@@ -294,7 +294,7 @@ class ServiceReplay::Play {
       if (arrival != Arrival::nothing) fault("did not stay silent" + listed);
       return;
     }
-    const std::string wanted = entry.instead();
+    const std::string& wanted = entry.instead();
     if (!wanted.starts_with("error ")) return fault("no such deviation" + listed);
     const int code = std::stoi(wanted.substr(6));
     if (recorded != nullptr && recorded->entries().front().at("error") == code) {

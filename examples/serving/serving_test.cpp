@@ -21,7 +21,7 @@ TEST(Serving, EndsAfterItsSeconds) {
 
 TEST(Serving, EndsWithASignal) {
   Stay stay(0);
-  pthread_kill(pthread_self(), SIGTERM);
+  raise(SIGTERM);
   stay.wait_for_end();
   EXPECT_FALSE(stay.wait(1h));
 }

@@ -142,13 +142,14 @@ void DynamicScript::add_wire(const MemberDescription& member) {
     const auto newest = weak.lock().wire(name).out();
     return newest ? newest->value : scripted("peek_out");
   });
-  object().wire(name).on_connect([weak = weak_from_this(), name, scripted](dynamic::ServedWire) {
-    const auto self = weak.lock();
-    if (!self || part(self->told("wires", name), "at_connect") != true) return;
-    self->do_later(name + " at_connect", [wire = self->object().wire(name), scripted] {
-      wire.set_in(scripted("peek_in"));
-    });
-  });
+  object().wire(name).on_connect(
+      [weak = weak_from_this(), name, scripted](const dynamic::ServedWire& /*wire*/) {
+        const auto self = weak.lock();
+        if (!self || part(self->told("wires", name), "at_connect") != true) return;
+        self->do_later(name + " at_connect", [wire = self->object().wire(name), scripted] {
+          wire.set_in(scripted("peek_in"));
+        });
+      });
   add_action("send_" + name, [this, member](std::string_view) {
     for (const Json& value : part(told("wires", member.name), "send")) {
       object().wire(member.name).set_in(value_of_json(definitions_, member.type, value));

@@ -139,7 +139,7 @@ class Caller {
         read_arguments<Parameters...>(adapters_, arguments));
   }
   // A varobject has no declared type: it is held as what it is.
-  static Held held(std::shared_ptr<Stub> stub, std::string_view type) {
+  static Held held(const std::shared_ptr<Stub>& stub, std::string_view type) {
     return {stub, type.empty() ? stub->rr_object_type().name : type};
   }
 

@@ -175,8 +175,8 @@ Frame Instrument::expose() {
   return microscope_.expose(now.x, now.y, actuators_);
 }
 
-std::shared_ptr<host::CameraHostSkeleton> make_host(std::shared_ptr<Instrument> instrument) {
-  return std::make_shared<Host>(std::move(instrument));
+std::shared_ptr<host::CameraHostSkeleton> make_host(const std::shared_ptr<Instrument>& instrument) {
+  return std::make_shared<Host>(instrument);
 }
 
 }  // namespace asom

@@ -59,6 +59,6 @@ class Instrument {
 /// The camera host of the paper's Example 1 with this instrument plugged in: device 0 is the
 /// scanning mirror (`Angles`), device 1 the deformable mirror (`Actuators`, in waves), camera 0 the
 /// camera.
-std::shared_ptr<host::CameraHostSkeleton> make_host(std::shared_ptr<Instrument> instrument);
+std::shared_ptr<host::CameraHostSkeleton> make_host(const std::shared_ptr<Instrument>& instrument);
 
 }  // namespace asom

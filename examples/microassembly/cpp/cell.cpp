@@ -42,8 +42,8 @@ drawing::Canvas look(const wire::AxesState& state, std::size_t camera, double li
     return drawing::Color{part(red), part(green), part(blue)};
   };
   // 4 um a pixel.
-  const auto column = [](double x) { return static_cast<int>(picture_width / 2 + x / 4); };
-  const auto row = [](double up) { return static_cast<int>(picture_height / 2 - up / 4); };
+  const auto column = [](double x) { return static_cast<int>(picture_width / 2.0 + x / 4); };
+  const auto row = [](double up) { return static_cast<int>(picture_height / 2.0 - up / 4); };
   drawing::Canvas canvas(picture_width, picture_height, lit(200, 205, 210));
   const int size = static_cast<int>(part_size / 2);
   const auto left = tip(state, 0);

@@ -146,12 +146,12 @@ rr_status rr_generator_next_async(rr_generator* generator, const rr_elements* pa
     rr::capi::RawGenerator& of = need(generator, "there is no generator").generator;
     const Terms terms(options);
     const rr::capi::StepParameter given(parameter);
-    const auto finish = [tables = generator->tables](rr::capi::Raw& value) -> void* {
+    auto finish = [tables = generator->tables](rr::capi::Raw& value) -> void* {
       return std::move(value.data).hand_out();
     };
     rr::capi::RawGenerator::start_step(of.state(), given.place(),
                                        std::make_unique<rr::capi::StepCompletion<decltype(finish)>>(
-                                           rr::capi::check(completion), finish));
+                                           rr::capi::check(completion), std::move(finish)));
   });
 }
 

@@ -8,6 +8,7 @@ using rr::Error;
 using rr::ErrorCode;
 using rr::capi::guarded;
 
+// NOLINTBEGIN(performance-unnecessary-value-param): others keep what they get.
 void rr_request::answer(const rr_elements* /*value*/) { rr::capi::refuse_answer(); }
 void rr_request::answer_end() { rr::capi::refuse_answer(); }
 void rr_request::answer_user(rr::User /*user*/) { rr::capi::refuse_answer(); }
@@ -17,6 +18,7 @@ void rr_request::answer_object(std::shared_ptr<rr::Skeleton> /*object*/) {
 void rr_request::answer_generator(std::shared_ptr<rr::GeneratorSource> /*source*/) {
   rr::capi::refuse_answer();
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void rr_request::set_arguments(rr::capi::Data data) {
   arguments_ = std::move(data);

@@ -27,7 +27,7 @@ SubscriptionOptions read_options(const rr_subscribe_options& given, Keeper& keep
   options.max_retry_delay = duration(given.max_retry_delay_ms);
   if (given.connect_timeout_ms != 0) options.connect_timeout = duration(given.connect_timeout_ms);
   options.allow_clear_credentials = given.allow_clear_credentials != 0;
-  const auto tables = std::make_shared<ClientTables>();
+  auto tables = std::make_shared<ClientTables>();
   keeper.keep(tables);
   options.make_definition_reader = [tables] { return tables; };
   return options;

@@ -308,7 +308,7 @@ TEST(Memories, OfPodsAreTransferredInPieces) {
                                     nullptr, nullptr),
               RR_OK);
     EXPECT_EQ(state.pieces, 3);
-    EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
+    EXPECT_EQ(state.sum, 24 * 25 / 2.0 + 25 * 0.5);
     // The same without waiting, to its end, and to a failure of the program's.
     const auto later = [&](auto begin) {
       std::atomic<int> ended = -1;
@@ -329,7 +329,7 @@ TEST(Memories, OfPodsAreTransferredInPieces) {
     state.sum = 0;
     EXPECT_EQ(later(rr_memory_read_pieces_async), RR_OK);
     EXPECT_EQ(state.pieces, 3);
-    EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
+    EXPECT_EQ(state.sum, 24 * 25 / 2.0 + 25 * 0.5);
     pieces.take = [](void*, std::uint64_t, const std::uint64_t*, std::size_t, const rr_elements*) {
       return rr_status{RR_DATA_TYPE_ERROR};
     };

@@ -332,7 +332,7 @@ TEST(SeveralServices, TakeOptionsWithoutAFilter) {
   const NodeHandle node = make_node();
   rr_subscribe_options options = quick();
   options.size = offsetof(rr_subscribe_options, filter);
-  std::memset(&options.filter, 0xEE, sizeof options.filter);
+  std::memset(static_cast<void*>(&options.filter), 0xEE, sizeof(const rr_service_filter*));
   const std::string url = url_of(one);
   const rr_str urls[] = {view(url)};
   rr_service_subscription* made = nullptr;

@@ -40,7 +40,7 @@ void write_property(Writer& writer, MessageVersion version, EntryType type, bool
 
 void write_property_get(benchmark::State& state) {
   Writer writer;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     write_property(writer, version_of(state), EntryType::property_get_req, false);
     benchmark::DoNotOptimize(writer.pieces().data());
   }
@@ -49,7 +49,7 @@ BENCHMARK(write_property_get)->Arg(2)->Arg(4);
 
 void write_property_value(benchmark::State& state) {
   Writer writer;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     write_property(writer, version_of(state), EntryType::property_get_res, true);
     benchmark::DoNotOptimize(writer.pieces().data());
   }
@@ -60,7 +60,7 @@ void read_property_value(benchmark::State& state) {
   Writer writer;
   write_property(writer, version_of(state), EntryType::property_get_res, true);
   const std::vector<std::byte> bytes = writer.copy();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Message message;
     Entry entry;
     Element element;
@@ -95,7 +95,7 @@ std::vector<std::byte> twenty_fields(MessageVersion version) {
 
 void next_element(benchmark::State& state) {
   const std::vector<std::byte> bytes = twenty_fields(version_of(state));
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Decoder decoder(version_of(state));
     ElementReader reader(decoder, bytes, field_names.size());
     Element element;
@@ -107,7 +107,7 @@ BENCHMARK(next_element)->Arg(2)->Arg(4);
 
 void check_twenty_fields(benchmark::State& state) {
   const std::vector<std::byte> bytes = twenty_fields(version_of(state));
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Decoder decoder(version_of(state));
     benchmark::DoNotOptimize(check_elements(decoder, bytes, field_names.size(), Limits{}));
   }
@@ -117,7 +117,7 @@ BENCHMARK(check_twenty_fields)->Arg(2)->Arg(4);
 
 void match_prefix(benchmark::State& state) {
   const std::vector<std::byte> bytes = twenty_fields(MessageVersion::v4);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Decoder decoder(MessageVersion::v4);
     ElementReader reader(decoder, bytes, field_names.size());
     double value = 0;
@@ -134,7 +134,7 @@ BENCHMARK(match_prefix);
 
 void write_prefix(benchmark::State& state) {
   Writer writer;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     writer.reset(MessageVersion::v4);
     for (std::size_t i = prefixes.size(); i-- != 0;) writer.prepend_scalar(prefixes[i], 1.5);
     benchmark::DoNotOptimize(writer.position());
@@ -145,7 +145,7 @@ BENCHMARK(write_prefix);
 
 void write_element(benchmark::State& state) {
   Writer writer;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     writer.reset(version_of(state));
     for (std::size_t i = field_names.size(); i-- != 0;) write_double(writer, field_names[i], 1.5);
     benchmark::DoNotOptimize(writer.position());
@@ -158,7 +158,8 @@ void string_table(benchmark::State& state) {
   Writer writer;
   write_property(writer, MessageVersion::v4, EntryType::property_get_res, true);
   const std::vector<std::byte> bytes = writer.copy();
-  for (auto _ : state) benchmark::DoNotOptimize(apply_string_table(bytes, true, true));
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(apply_string_table(bytes, true, true));
 }
 BENCHMARK(string_table);
 

@@ -52,7 +52,7 @@ int main(int count, char** words) {
         node.connect<SourceStub>("rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=source");
     one->end = one->client->samples().connect();
     one->delays.reserve(packets);
-    one->subscription = one->end.on_packet([packets, me = one.get()](Sample sample) {
+    one->subscription = one->end.on_packet([packets, me = one.get()](const Sample& sample) {
       if (sample[0] != me->received) ++me->out_of_order;
       me->delays.push_back(seconds(Clock::now()) - sample[1]);
       if (++me->received == packets) {

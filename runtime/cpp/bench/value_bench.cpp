@@ -150,7 +150,7 @@ S20 make_s20(int k) {
 S20List make_list() {
   S20List list;
   list.items.emplace();
-  for (int k = 0; k < list_size; ++k) list.items->push_back(make_s20(k));
+  for (int k = 0; k < list_size; ++k) list.items->emplace_back(make_s20(k));
   return list;
 }
 PoseList make_poses() {

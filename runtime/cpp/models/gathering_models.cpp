@@ -155,6 +155,7 @@ class AskingConnection {
   auto& lease() { return lease_; }
   void flush() { sending_.flush(); }
 
+  typename Sync::Mutex mutex_;  // named by steps that this has no use for
   channel::BasicReadLease<Sync> lease_;
   Queue sending_;
 };

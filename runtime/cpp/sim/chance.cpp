@@ -8,7 +8,7 @@
 
 #include "runtime/cpp/sim/scheduler.hpp"
 
-extern "C" int getentropy(void* to, size_t size) noexcept {
+extern "C" int getentropy(void* to, size_t size) {
   rr::sim::Scheduler* const run = rr::sim::Scheduler::current();
   if (run == nullptr) {
     return ::syscall(SYS_getrandom, to, size, 0) == static_cast<long>(size) ? 0 : -1;

@@ -57,7 +57,7 @@ void start(Runtime& runtime, const AsyncCall& call, const Completions& completio
       return object.async_generate(
           name, arguments,
           [&runtime, completions, from = call.object, member](std::exception_ptr error,
-                                                              dynamic::Generator generator) {
+                                                              const dynamic::Generator& generator) {
             completions.end(std::move(error), [&runtime, from, member, generator] {
               return call_function("RobotRaconteurGenerator",
                                    {give_generator(runtime, *from, member, generator)});

@@ -36,7 +36,7 @@ void next(Runtime& runtime, Call& call) {
   const Value parameter = parameter_of(*handle, call, 1);
   const auto value = runtime.call<std::optional<Value>>(
       [&] { return handle->generator.next(parameter); },
-      [&](auto done) { handle->generator.async_next(parameter, done); });
+      [&](auto done) { handle->generator.async_next(parameter, std::move(done)); });
   call.give(mxCreateLogicalScalar(value.has_value()));
   call.give(value ? handle->write(*value) : make_null());
 }
@@ -111,9 +111,11 @@ void end(Runtime& runtime, Call& call) {
   const auto handle = generator_of(runtime, call);
   const bool is_abort = read_number<bool>(call[1]);
   Generator& generator = handle->generator;
-  runtime.call<>(
-      [&] { is_abort ? generator.abort() : generator.close(); },
-      [&](auto done) { is_abort ? generator.async_abort(done) : generator.async_close(done); });
+  runtime.call<>([&] { is_abort ? generator.abort() : generator.close(); },
+                 [&](auto done) {
+                   is_abort ? generator.async_abort(std::move(done))
+                            : generator.async_close(std::move(done));
+                 });
 }
 
 }  // namespace

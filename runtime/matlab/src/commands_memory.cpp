@@ -49,7 +49,7 @@ void read(Runtime& runtime, Call& call) {
   const Memory::Numbers count = numbers_of(call[3]);
   const Value items =
       runtime.call<Value>([&] { return memory.read(position, count); },
-                          [&](auto done) { memory.async_read(position, count, done); });
+                          [&](auto done) { memory.async_read(position, count, std::move(done)); });
   call.give(to_mex(items, *member.plan, object->connection()->plans));
 }
 
@@ -61,7 +61,7 @@ void write(Runtime& runtime, Call& call) {
   const Memory::Numbers position = numbers_of(call[2]);
   const Value items = read_value(*object, call[3], member.plan, member.subject);
   runtime.call<>([&] { memory.write(position, items); },
-                 [&](auto done) { memory.async_write(position, items, done); });
+                 [&](auto done) { memory.async_write(position, items, std::move(done)); });
 }
 
 }  // namespace

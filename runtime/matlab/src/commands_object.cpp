@@ -15,7 +15,7 @@ Accessed give_value(const Value& value, const Resolved& member, ObjectHandle& ob
 
 Value get(Runtime& runtime, const ObjectHandle& object, const std::string& name) {
   return runtime.call<Value>([&] { return object.object().get(name); },
-                             [&](auto done) { object.object().async_get(name, done); });
+                             [&](auto done) { object.object().async_get(name, std::move(done)); });
 }
 
 void set(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
@@ -23,14 +23,15 @@ void set(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
   const std::string& name = member.member.name;
   const Value value = read_value(object, given, member.plan, member.subject);
   runtime.call<>([&] { object.object().set(name, value); },
-                 [&](auto done) { object.object().async_set(name, value, done); });
+                 [&](auto done) { object.object().async_set(name, value, std::move(done)); });
 }
 
 Value call_member(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
                   const dynamic::List& arguments) {
   const std::string& name = member.member.name;
-  return runtime.call<Value>([&] { return object.object().call(name, arguments); },
-                             [&](auto done) { object.object().async_call(name, arguments, done); });
+  return runtime.call<Value>(
+      [&] { return object.object().call(name, arguments); },
+      [&](auto done) { object.object().async_call(name, arguments, std::move(done)); });
 }
 
 mxArray* open_generator(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
@@ -38,7 +39,7 @@ mxArray* open_generator(Runtime& runtime, const ObjectHandle& object, const Reso
   const std::string& name = member.member.name;
   auto generator = runtime.call<dynamic::Generator>(
       [&] { return object.object().generate(name, arguments); },
-      [&](auto done) { object.object().async_generate(name, arguments, done); });
+      [&](auto done) { object.object().async_generate(name, arguments, std::move(done)); });
   return give_generator(runtime, object, member, std::move(generator));
 }
 
@@ -56,7 +57,7 @@ mxArray* find_object(Runtime& runtime, const ObjectHandle& object, const Resolve
         if (index.kind() == dynamic::Kind::text) return from.object(name, index.text());
         return from.object(name, index.as<std::int32_t>());
       },
-      [&](auto done) { from.async_object(name, index, done); });
+      [&](auto done) { from.async_object(name, index, std::move(done)); });
   return give_object(runtime, object.connection(), std::move(found));
 }
 

@@ -2,6 +2,7 @@
 // Services that the interpreter offers.
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "rr/error.hpp"
 #include "rr/users.hpp"
@@ -185,7 +186,9 @@ void call_back(Runtime& runtime, Call& call) {
   const List arguments = read_parameters(*served, member, call, 3);
   const Value result = runtime.call<Value>(
       [&] { return served->object.call_back(member.name, client, arguments); },
-      [&](auto done) { served->object.async_call_back(member.name, client, arguments, done); });
+      [&](auto done) {
+        served->object.async_call_back(member.name, client, arguments, std::move(done));
+      });
   if (member.type.kind() == dynamic::Kind::null) return call.give(make_null());
   call.give(served->write(member.type, result));
 }

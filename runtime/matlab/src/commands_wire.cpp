@@ -30,7 +30,7 @@ void connect_wire(Runtime& runtime, Call& call) {
   const Resolved& member = object->resolve(call.text(1));
   const dynamic::Wire wire = object->object().wire(member.member.name);
   auto end = runtime.call<WireConnection>([&] { return wire.connect(); },
-                                          [&](auto done) { wire.async_connect(done); });
+                                          [&](auto done) { wire.async_connect(std::move(done)); });
   call.give(give_handle(runtime, std::make_shared<WireHandle>(*object, member, std::move(end))));
 }
 
@@ -125,7 +125,9 @@ void peek(Runtime& runtime, Call& call) {
   const dynamic::Wire wire = object->object().wire(member.member.name);
   const auto timed = runtime.call<Timed<Value>>(
       [&] { return of_out ? wire.peek_out() : wire.peek_in(); },
-      [&](auto done) { of_out ? wire.async_peek_out(done) : wire.async_peek_in(done); });
+      [&](auto done) {
+        of_out ? wire.async_peek_out(std::move(done)) : wire.async_peek_in(std::move(done));
+      });
   give_timed(call, MemberHandle(*object, member), timed);
 }
 
@@ -136,7 +138,7 @@ void poke(Runtime& runtime, Call& call) {
   const dynamic::Wire wire = object->object().wire(member.member.name);
   const Value value = read_value(*object, call[2], member.plan, member.subject);
   runtime.call<>([&] { wire.poke_out(value); },
-                 [&](auto done) { wire.async_poke_out(value, done); });
+                 [&](auto done) { wire.async_poke_out(value, std::move(done)); });
 }
 
 // wire_close(wire)

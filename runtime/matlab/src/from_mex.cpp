@@ -30,7 +30,7 @@ Array<T> items_of(const mxArray* given) {
     throw Misfit("expected " + std::string(word_of_number<T>()) + "[], got " + described(given));
   }
   Array<T> items(count_of(given));
-  if (items.size() != 0) read_numbers(given, items.mutate().data());
+  if (!items.empty()) read_numbers(given, items.mutate().data());
   return items;
 }
 

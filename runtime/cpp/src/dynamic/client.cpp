@@ -72,7 +72,7 @@ VarValue to_varvalue(const Value& value) {
 }
 
 Client::Client(rr::Client<Stub> client, std::shared_ptr<DefinitionStore> store)
-    : ClientBase(std::move(client)),
+    : ClientBase(std::move(static_cast<ClientBase&>(client))),  // the session, not the stub
       store_(std::move(store)),
       root_(std::dynamic_pointer_cast<DynamicStub>(client.stub())) {}
 

@@ -108,7 +108,7 @@ TEST(DynamicPipes, CarryPacketsBothWays) {
 
   std::promise<rr::Array<Sample>> received;
   pipes.skeleton->samples().on_connect([&](rr::PipeEndpoint<rr::Array<Sample>> end) {
-    end.on_packet([&](rr::Array<Sample> packet) { received.set_value(packet); }).detach();
+    end.on_packet([&](const rr::Array<Sample>& packet) { received.set_value(packet); }).detach();
   });
   Awaited<PipeEndpoint> connected;
   pipes->pipe("samples").async_connect(connected.done());

@@ -36,6 +36,7 @@ inline std::vector<Mapping> mappings() {
     const std::uintptr_t begin = std::stoull(line, &dash, 16);
     const std::size_t rights = line.find(' ') + 1;
     const std::uintptr_t end = std::stoull(line.substr(dash + 1), nullptr, 16);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the system writes addresses as numbers.
     Mapping mapping{reinterpret_cast<std::byte*>(begin), end - begin, line[rights + 1] == 'w'};
     std::array<char, 0x28> header{};
     memory.clear();

@@ -56,7 +56,7 @@ rr::NodeOptions options(const std::string& folder) {
   auto level = wired.level().connect();
   auto trace = wired.trace().connect();
   std::atomic<double> seen{0};
-  const rr::Subscription subscription =
+  [[maybe_unused]] const rr::Subscription subscription =
       level.on_in([&](double value, const rr::TimeSpec& /*time*/) { seen = value; });
   if (!trace.wait_in(rr::testing::plenty)) std::abort();
   std::cout << "reading" << std::endl;

@@ -211,6 +211,7 @@ mxArray* make_room(const Dims& dims) {
       for (std::size_t i = 0; i < dims.size(); ++i) {
         static_cast<double*>(mxGetData(sizes))[i] = static_cast<double>(dims[i]);
       }
+      // NOLINTNEXTLINE(bugprone-suspicious-stringview-data-usage): the words are literals.
       mxArray* arguments[] = {sizes, mxCreateString(word_of_number<T>().data())};
       mxArray* room = nullptr;
       mxArray* const failure = mexCallMATLABWithTrap(1, &room, 2, arguments, "zeros");

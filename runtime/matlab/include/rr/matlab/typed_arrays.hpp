@@ -102,7 +102,7 @@ struct Typed<Array<T>> {
   }
   static void read(const mxArray* given, Array<T>& value) {
     Array<T> items(item_count<T>(given));
-    if (items.size() != 0) read_items<T>(given, items.mutate());
+    if (!items.empty()) read_items<T>(given, items.mutate());
     value = std::move(items);
   }
 };
@@ -164,7 +164,7 @@ struct Typed<MultiArray<T>> {
   }
   static void take(const mxArray* given, WireDims dims, MultiArray<T>& value) {
     Array<T> items(item_count_of(dims));
-    if (items.size() != 0) read_items<T>(given, items.mutate());
+    if (!items.empty()) read_items<T>(given, items.mutate());
     value.dims = std::move(dims);
     value.items = std::move(items);
   }
