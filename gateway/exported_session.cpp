@@ -88,7 +88,7 @@ bool ExportedSession::is_open() const {
   return client_.is_open();
 }
 
-void ExportedSession::find(const std::string& path, RobotSession::Found done) const {
+void ExportedSession::find(const std::string& path, const RobotSession::Found& done) const {
   std::optional<dynamic::Object> root;
   {
     const MutexLock lock(mutex_);
@@ -98,7 +98,7 @@ void ExportedSession::find(const std::string& path, RobotSession::Found done) co
     done(error_pointer(ErrorCode::connection_error, "the session at the robot has ended"), {});
     return;
   }
-  find_object(*root, path, std::move(done));
+  find_object(*root, path, done);
 }
 
 bool ExportedSession::is_new(const std::string& path, const dynamic::Object& object) {

@@ -50,7 +50,7 @@ class ExportedSession : public std::enable_shared_from_this<ExportedSession> {
   /// Whether it has begun.
   [[nodiscard]] bool is_open() const;
   /// As RobotSession::find(). Any thread.
-  void find(const std::string& path, RobotSession::Found done) const;
+  void find(const std::string& path, const RobotSession::Found& done) const;
   [[nodiscard]] const std::string& reply_topic() const { return reply_topic_; }
   /// Keeps an object of the session, whose callbacks last as long. True for the first one at a
   /// path, unless there are too many. Any thread.

@@ -139,13 +139,13 @@ void FarSessions::ask(std::uint32_t client, FarRequest wanted, FarCalls::Done do
     }
   }
   // NOLINTBEGIN(bugprone-use-after-move): they are moved where the request waits.
-  if (refusal) {
+  if (is_waiting) {
+    if (opens) open(client, name, user);
+  } else if (refusal) {
     done(refusal, {});
-  } else if (opens) {
-    open(client, name, user);
   } else if (name.empty()) {
     calls_->request(std::move(wanted), std::move(done));
-  } else if (!is_waiting) {
+  } else {
     send(client, name, std::move(wanted), std::move(done));
   }
   // NOLINTEND(bugprone-use-after-move)

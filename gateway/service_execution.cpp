@@ -180,12 +180,12 @@ void ServiceExporter::execute(const RequestTopic& request, const Message& messag
 }
 
 void ServiceExporter::find_object_for(const RequestTopic& request, const Message& message,
-                                      RobotSession::Found found) {
+                                      const RobotSession::Found& found) {
   const auto name = message.find("session");
   if (!name) {
-    session_of(request.user)->find(request.path, std::move(found));
+    session_of(request.user)->find(request.path, found);
   } else if (const auto session = sessions_.find(request.user, *name)) {
-    session->find(request.path, std::move(found));
+    session->find(request.path, found);
   } else {
     found(error_pointer(ErrorCode::connection_error, "the session at the robot has ended"), {});
   }

@@ -149,7 +149,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   using Executed = Function<void(std::exception_ptr, Message)>;
   void execute(const RequestTopic& request, const Message& message);
   void find_object_for(const RequestTopic& request, const Message& message,
-                       RobotSession::Found found);
+                       const RobotSession::Found& found);
   void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
                const Executed& done);
   void send_packets(const RequestTopic& request, const Message& message,

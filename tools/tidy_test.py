@@ -13,6 +13,7 @@ TOOLS = pathlib.Path(__file__).resolve().parent
 # With a finding in a header, one of the syntax tree, one of the paths through a function, and none of the system's header.
 HEADER = "#pragma once\nstruct badly_named {\n  int value = 0;\n};\n"
 SYSTEM = "#pragma once\nstruct badly_named_elsewhere {\n  int value = 0;\n};\n"
+BESIDE = "#pragma once\ninline constexpr int beside = 1;\n"
 SOURCE = """#include "runtime/planted.hpp"
 #include <outside.hpp>
 #include <string>
@@ -28,7 +29,11 @@ int read_null(bool is_null) {
   return *place;
 }
 """
-CLEAN = "#include <outside.hpp>\n#include <string>\nint length(const std::string& text) { return static_cast<int>(text.size()); }\n"
+CLEAN = """#include "beside.hpp"
+#include <outside.hpp>
+#include <string>
+int length(const std::string& text) { return beside + static_cast<int>(text.size()); }
+"""
 
 
 class Tidy(unittest.TestCase):
@@ -48,8 +53,8 @@ class Tidy(unittest.TestCase):
         for name in ("tidy", "tidy_scope.cpp", "together.py"):
             shutil.copy(TOOLS / name, self.root / "tools")
         shutil.copy(TOOLS.parent / ".clang-tidy", self.root)
-        for place, text in (("runtime/planted.hpp", HEADER), ("system/outside.hpp", SYSTEM)):
-            (self.root / place).parent.mkdir(parents=True)
+        for place, text in (("runtime/planted.hpp", HEADER), ("runtime/beside.hpp", BESIDE), ("system/outside.hpp", SYSTEM)):
+            (self.root / place).parent.mkdir(parents=True, exist_ok=True)
             (self.root / place).write_text(text, encoding="utf-8")
 
     def tearDown(self):
@@ -57,15 +62,17 @@ class Tidy(unittest.TestCase):
         for mark in self.marks():
             mark.unlink()
 
-    def run_tidy(self, text):
-        source = self.root / "runtime/planted.cpp"
-        source.write_text(text, encoding="utf-8")
+    def run_tidy(self, *texts):
         build = self.root.parent / "build"
         build.mkdir(exist_ok=True)
-        (build / "compile_commands.json").write_text(json.dumps([{
-            "directory": str(build), "file": str(source),
-            "command": f"/usr/bin/c++ -I{self.root} -isystem {self.root}/system -std=c++20 -o planted.o -c {source}"}]),
-            encoding="utf-8")
+        entries = []
+        for text, name in zip(texts, ("planted", "second")):
+            source = self.root / f"runtime/{name}.cpp"
+            source.write_text(text, encoding="utf-8")
+            entries.append({
+                "directory": str(build), "file": str(source),
+                "command": f"/usr/bin/c++ -I{self.root} -isystem {self.root}/system -std=c++20 -o {name}.o -c {source}"})
+        (build / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
         return subprocess.run([self.root / "tools/tidy", build], check=False, capture_output=True, text=True,
                               env={**os.environ, "XDG_CACHE_HOME": self.cache.name})
 
@@ -85,6 +92,12 @@ class Tidy(unittest.TestCase):
         run = self.run_tidy(CLEAN)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertEqual(len(self.marks()), 1)
+
+    def test_sources_that_do_not_fit_together_leave_a_mark_for_each_and_for_both(self):
+        run = self.run_tidy(CLEAN, CLEAN + "int second() { return 2; }\n")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertIn("[1/1]", run.stderr)
+        self.assertEqual(len(self.marks()), 3)
 
     def test_what_clang_cannot_read_is_an_error(self):
         run = self.run_tidy("int length() { return missing; }\n")

@@ -74,6 +74,7 @@ struct Sizes {
 class RawBlocks {
  public:
   RawBlocks() : listener_(socket(AF_INET, SOCK_STREAM, 0)) {
+    if (listener_ < 0) throw std::runtime_error(std::strerror(errno));
     sockaddr_in address = loopback(0);
     socklen_t size = sizeof address;
     check(bind(listener_, reinterpret_cast<sockaddr*>(&address), size) == 0);

@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -24,6 +26,12 @@ std::string shell_word(std::string_view word) {
     text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
   }
   return text + "'";
+}
+
+int open_for_writing(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (file < 0) throw std::system_error(errno, std::generic_category(), path.string());
+  return file;
 }
 
 }  // namespace
@@ -87,9 +95,8 @@ Running::Running(const TemporaryFolder& folder, std::vector<std::string> argumen
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
-  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
-  const int out = ::open(out_.c_str(), flags, 0600);
-  const int err = ::open(err_.c_str(), flags, 0600);
+  const int out = open_for_writing(out_);
+  const int err = open_for_writing(err_);
   process_ = ::fork();
   if (process_ != 0) {
     ::close(out);

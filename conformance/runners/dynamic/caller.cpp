@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/runners/dynamic/caller.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -178,11 +179,11 @@ Held DynamicCaller::objref(std::string_view member, const Json& index) {
   // A varobject has no declared type: it is held as what it is. The names live in the session.
   const auto stub = found.shared_stub();
   const std::string declared = object_.member(member).object_type;
-  const Member* wire = nullptr;
-  for (const Member& one : object_.stub().rr_object_type().members) {
-    if (one.name == member) wire = &one;
-  }
-  return {stub, declared.empty() ? stub->rr_object_type().name : wire->object_type};
+  if (declared.empty()) return {stub, stub->rr_object_type().name};
+  const auto members = object_.stub().rr_object_type().members;
+  const auto wire = std::ranges::find(members, member, &Member::name);
+  if (wire == members.end()) throw std::logic_error("no member " + std::string(member));
+  return {stub, wire->object_type};
 }
 
 Subscription DynamicCaller::listen(std::string_view event, std::function<void(Json)> handler) {

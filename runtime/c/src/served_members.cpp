@@ -39,14 +39,14 @@ class NumberMemory final : public MemorySource {
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                void* items) override {
     const rr_memory_source& source = **source_;
-    if (source.read == nullptr) check(RR_WRITE_ONLY_MEMBER);
+    if (source.read == nullptr) throw Error(piece_error(RR_WRITE_ONLY_MEMBER));
     check(source.read(source.context, position.data(), count.data(), count.size(), items,
                       size_of(count)));
   }
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                 const void* items) override {
     const rr_memory_source& source = **source_;
-    if (source.write == nullptr) check(RR_READ_ONLY_MEMBER);
+    if (source.write == nullptr) throw Error(piece_error(RR_READ_ONLY_MEMBER));
     check(source.write(source.context, position.data(), count.data(), count.size(), items,
                        size_of(count)));
   }
@@ -71,7 +71,7 @@ class RecordMemory final : public service::PieceMemory {
   [[nodiscard]] const Type& piece_type() const override { return raw_type; }
   std::shared_ptr<const void> read_piece(Numbers position, Numbers count) override {
     const rr_memory_source& source = **source_;
-    if (source.read_piece == nullptr) check(RR_WRITE_ONLY_MEMBER);
+    if (source.read_piece == nullptr) throw Error(piece_error(RR_WRITE_ONLY_MEMBER));
     rr_piece piece;
     check(source.read_piece(source.context, position.data(), count.data(), count.size(), &piece));
     return std::make_shared<const Raw>(piece.take());
@@ -81,7 +81,7 @@ class RecordMemory final : public service::PieceMemory {
   }
   void write_piece(Numbers position, Numbers count, const void* piece) override {
     const rr_memory_source& source = **source_;
-    if (source.write_piece == nullptr) check(RR_READ_ONLY_MEMBER);
+    if (source.write_piece == nullptr) throw Error(piece_error(RR_READ_ONLY_MEMBER));
     const rr_elements elements = static_cast<const Raw*>(piece)->data.elements();
     check(
         source.write_piece(source.context, position.data(), count.data(), count.size(), &elements));

@@ -75,7 +75,7 @@ void all(Runtime& runtime, Call& call) {
   while (true) {
     const auto value = runtime.call<std::optional<Value>>(
         [&] { return handle->generator.next(); },
-        [&](auto done) { handle->generator.async_next({}, done); });
+        [&](auto done) { handle->generator.async_next({}, std::move(done)); });
     if (!value) return call.give(make_cells(values));
     values.push_back(handle->write(*value));
     received += static_cast<double>(memory_of(values.back()));

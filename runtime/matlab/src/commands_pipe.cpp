@@ -36,8 +36,9 @@ void connect_pipe(Runtime& runtime, Call& call) {
   const PipeOptions options{.index = call.has(2) ? read_number<std::int32_t>(call[2]) : -1,
                             .unreliable = (member.member.access & unreliable) != 0};
   const dynamic::Pipe pipe = object->object().pipe(member.member.name);
-  auto end = runtime.call<PipeEndpoint>([&] { return pipe.connect(options); },
-                                        [&](auto done) { pipe.async_connect(done, options); });
+  auto end =
+      runtime.call<PipeEndpoint>([&] { return pipe.connect(options); },
+                                 [&](auto done) { pipe.async_connect(std::move(done), options); });
   call.give(give_handle(runtime, std::make_shared<PipeHandle>(*object, member, std::move(end))));
 }
 

@@ -21,7 +21,8 @@ const ArrayContent& array_of(const Value& value, const char* expected) {
 }
 
 const ItemType& item_of(const ArrayContent& array) {
-  return array.record != nullptr ? array.record->item : number_item(array.number);
+  const auto* const record = array.record.get();
+  return record != nullptr ? record->item : number_item(array.number);
 }
 
 // -1 for none.

@@ -128,7 +128,8 @@ void put_aside_generator_index(const EntryTree& recorded, EntryTree& live, Gener
 void rename_generator(EntryTree& entry, const Generators& generators) {
   if (entry.type != EntryType::generator_next_req) return;
   ElementTree* const element = find_named(entry.elements, "index");
-  const auto index = element == nullptr ? std::nullopt : int32_of(*element);
+  if (element == nullptr) return;
+  const auto index = int32_of(*element);
   const auto known = index ? generators.find(*index) : generators.end();
   if (known != generators.end()) put(*element, known->second);
 }
