@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "rr/subscription.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -171,18 +175,25 @@ TEST(ServiceFilters, LimitTheConnections) {
   Node node;
   auto options = with({.max_connections = 1});
   options.connect_timeout = slowness() * 3s;  // those that answer may need more than one
+  std::atomic<int> silent_failures = 0;
   auto subscription = node.subscribe_all({{silent.url()}, {first.url()}, {second.url()}}, options);
+  const auto counting =
+      subscription.on_failed([&](const std::vector<std::string>& urls, const Error&) {
+        if (urls.front() == silent.url()) ++silent_failures;
+      });
   EXPECT_EQ(subscription.wait_default_client<CounterStub>(60s)->get_name(), "first");
   EXPECT_THAT(subscription.connected_clients(), SizeIs(1));
   EXPECT_THAT(second.service()->clients(), IsEmpty());
+  std::this_thread::sleep_for(100ms);  // until the silent one waits again
+  const int failures_before = silent_failures;
   first.stop();
   const auto is_second = [&] {
     const auto client = subscription.try_default_client<CounterStub>();
     return client &&
            error_of([&] { EXPECT_EQ(client->get_name(), "second"); }).code() == ErrorCode::none;
   };
-  // The silent one has its turn first, and each attempt may take long.
-  EXPECT_TRUE(eventually(is_second) || eventually(is_second) || eventually(is_second));
+  EXPECT_TRUE(eventually(is_second));
+  EXPECT_EQ(silent_failures, failures_before) << "it is tried before one that has not failed";
 }
 
 // Attributes, without a service

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a subscription connects to its services, and what it does when that fails or ends.
 #include <algorithm>
+#include <cstdint>
 #include <exception>
-#include <iterator>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -32,15 +33,16 @@ void Services::begin_soon(const TargetPointer& target) {
   host_.core->reactor().post([self = shared_from_this(), target] { self->begin(target); });
 }
 
-// Those that wait, by one thread: the first of them comes first.
+// Those that wait, by one thread, in the order of their failures, before which those come that have
+// none: no service waits for ever for one that fails slowly and waits again at once.
 void Services::begin_waiting() {
-  std::vector<TargetPointer> waiting;
-  std::ranges::copy_if(targets_, std::back_inserter(waiting), [](const TargetPointer& target) {
-    return target->phase == Target::Phase::waiting;
-  });
+  std::multimap<std::uint64_t, TargetPointer> waiting;
+  for (const TargetPointer& target : targets_) {
+    if (target->phase == Target::Phase::waiting) waiting.emplace(target->failed_at, target);
+  }
   if (waiting.empty()) return;
   host_.core->reactor().post([self = shared_from_this(), waiting = std::move(waiting)] {
-    for (const TargetPointer& target : waiting) {
+    for (const auto& [failed_at, target] : waiting) {
       if (!self->begin(target)) return;
     }
   });
